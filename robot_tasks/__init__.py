@@ -1,0 +1,1 @@
+"""Robot skills to tune: MuJoCo rollouts of behaviour trees under Cartesian impedance control."""

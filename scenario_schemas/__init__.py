@@ -1,0 +1,1 @@
+"""JSON Schemas of the scenario file, one per section; opened with `importlib.resources`."""
