@@ -1,0 +1,111 @@
+"""What an evaluation brings back, from one call of the black box to one row of the history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from hypermap_lite.typing import Configuration
+
+
+class State(Enum):
+    """How an evaluation ended."""
+
+    COMPLETED = "completed"
+    """All objectives came back as finite numbers."""
+
+    INFEASIBLE = "infeasible"
+    """The black box answered that this configuration is not allowed."""
+
+    FAILED = "failed"
+    """It crashed, returned nothing usable, or returned NaN or infinity."""
+
+    TIMEOUT = "timeout"
+    """It ran past its time limit and was killed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """The answer of one call of the black box."""
+
+    state: State
+    values: Mapping[str, float] = field(default_factory=dict)
+    """Objective values by name, as the user directed them; empty unless completed."""
+
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    """Extra numbers worth a column."""
+
+    error: str = ""
+    """One line that says what went wrong; empty if completed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replicate:
+    """One call of the black box: a row of ``evaluations.csv``."""
+
+    trial: int
+    replicate: int
+    seed: int
+    configuration: Configuration
+    outcome: Outcome
+    seconds: float
+    """Wall-clock duration of the call [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Suggestion:
+    """One configuration to evaluate, and why the optimizer chose it."""
+
+    trial: int
+    """Running number of the configuration, from 0."""
+
+    configuration: Configuration
+    phase: str
+    """``default``, ``design``, ``model``, ``random`` or ``prior``: which rule chose it."""
+
+    prior_weight: float | None = None
+    """Exponent the user prior had in the choice; None where it had no part."""
+
+    acquisition_value: float | None = None
+    """Value of the maximized acquisition function; None outside the model phase."""
+
+    seconds: float = 0.0
+    """CPU time the choice took [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Evaluation:
+    """One configuration with the summary of its replicates: a row of ``history.csv``."""
+
+    suggestion: Suggestion
+    state: State
+    values: Mapping[str, float] = field(default_factory=dict)
+    """Mean of each objective over the replicates, as the user directed it; empty unless completed."""
+
+    standard_errors: Mapping[str, float] = field(default_factory=dict)
+    """Standard error of each mean; NaN with fewer than two replicates."""
+
+    replicates: int = 1
+    seconds: float = 0.0
+    """Summed wall-clock duration of the replicates [s]."""
+
+    timestamp: int = 0
+    """Time at which the row was written, in ms since the start of the run."""
+
+    error: str = ""
+
+    @property
+    def trial(self) -> int:
+        """Running number of the configuration."""
+        return self.suggestion.trial
+
+    @property
+    def configuration(self) -> Configuration:
+        """The point that was evaluated."""
+        return self.suggestion.configuration
+
+    @property
+    def is_completed(self) -> bool:
+        """Whether it has objective values."""
+        return self.state is State.COMPLETED

@@ -1,0 +1,66 @@
+"""The record of a run in memory: append-only, in the order of the trials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+
+from hypermap_lite.errors import UsageError
+from hypermap_lite.evaluation.outcome import Evaluation
+from hypermap_lite.objectives import Objective, values_of
+from hypermap_lite.space.search_space import SearchSpace
+from hypermap_lite.typing import FloatArray
+
+
+class History:
+    """All finished evaluations of a run, trial 0 first, without gaps."""
+
+    def __init__(self, space: SearchSpace, objectives: Sequence[Objective]) -> None:
+        self.space = space
+        self.objectives = tuple(objectives)
+        self._evaluations: list[Evaluation] = []
+
+    def append(self, evaluation: Evaluation) -> None:
+        """Add the next evaluation.
+
+        Raises
+        ------
+        UsageError
+            If its trial number is not the next one.
+        """
+        if evaluation.trial != len(self):
+            raise UsageError(f"trial {evaluation.trial} cannot be recorded: the next trial is {len(self)}")
+        self._evaluations.append(evaluation)
+
+    def extend(self, evaluations: Iterable[Evaluation]) -> None:
+        """Add several evaluations in order."""
+        for evaluation in evaluations:
+            self.append(evaluation)
+
+    def __len__(self) -> int:
+        return len(self._evaluations)
+
+    def __iter__(self) -> Iterator[Evaluation]:
+        return iter(self._evaluations)
+
+    def __getitem__(self, trial: int) -> Evaluation:
+        return self._evaluations[trial]
+
+    @property
+    def completed(self) -> list[Evaluation]:
+        """Those with objective values, in the order of the trials."""
+        return [e for e in self._evaluations if e.is_completed]
+
+    def X(self) -> FloatArray:  # noqa: N802 - the field's name
+        """Return the codes of the completed evaluations, shape (n, d)."""
+        return self.space.encode([e.configuration for e in self.completed])
+
+    def Y(self) -> FloatArray:  # noqa: N802 - the field's name
+        """Return the objectives of the completed evaluations, to be minimized, shape (n, m)."""
+        rows = [values_of(self.objectives, e.values) for e in self.completed]
+        return np.array(rows).reshape(len(rows), len(self.objectives))
+
+    def X_all(self) -> FloatArray:  # noqa: N802 - the field's name
+        """Return the codes of all evaluations, whatever their state, shape (len(self), d)."""
+        return self.space.encode([e.configuration for e in self._evaluations])

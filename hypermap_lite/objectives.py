@@ -1,0 +1,53 @@
+"""Objectives: their names, directions and reference points; the one place where a direction flips a sign."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from hypermap_lite.typing import FloatArray
+
+
+class Goal(Enum):
+    """Whether small or large values of an objective are wanted."""
+
+    MINIMIZE = "minimize"
+    MAXIMIZE = "maximize"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Objective:
+    """One quantity to optimize, in the user's own units and direction."""
+
+    name: str
+    """Key under which an evaluation returns it; also its column in the history."""
+
+    goal: Goal = Goal.MINIMIZE
+    """Direction in which it is better."""
+
+    reference_point: float | None = None
+    """Worst value that still counts for the hypervolume, in the user's units and direction."""
+
+    @property
+    def sign(self) -> float:
+        """Factor that turns a value into one to be minimized: 1.0 or -1.0."""
+        return 1.0 if self.goal is Goal.MINIMIZE else -1.0
+
+
+def to_minimization(objectives: Sequence[Objective], values: FloatArray) -> FloatArray:
+    """Turn values as the user directed them, shape (n, m), into values to be minimized; its own inverse."""
+    return values * np.array([objective.sign for objective in objectives])
+
+
+def values_of(objectives: Sequence[Objective], outcome: Mapping[str, float]) -> FloatArray:
+    """Return one outcome's objective values to be minimized, shape (m,)."""
+    return np.array([objective.sign * outcome[objective.name] for objective in objectives])
+
+
+def reference_point_of(objectives: Sequence[Objective]) -> FloatArray | None:
+    """Return the reference point to be minimized against, shape (m,), or None if an objective lacks one."""
+    points = [o.sign * o.reference_point for o in objectives if o.reference_point is not None]
+    return np.array(points) if len(points) == len(objectives) else None

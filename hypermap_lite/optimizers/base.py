@@ -1,0 +1,81 @@
+"""What every optimizer offers: ask for configurations, tell their evaluations."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+from time import process_time
+
+from hypermap_lite.errors import UsageError
+from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
+from hypermap_lite.history.history import History
+
+
+class Optimizer(ABC):
+    """Suggests configurations from the history of a run.
+
+    The only state is the history and the pending suggestions: what `ask` returns is a function of the scenario,
+    the completed evaluations and the pending ones, so a run that is told a stored history goes on as if it had
+    never stopped.
+    """
+
+    def __init__(self, history: History) -> None:
+        self.history = history
+        self._pending: dict[int, Suggestion] = {}
+        self._told: dict[int, Evaluation] = {}
+
+    @property
+    def pending(self) -> list[Suggestion]:
+        """Suggestions that are not in the history yet, in the order of their trials."""
+        in_flight = self._pending | {trial: evaluation.suggestion for trial, evaluation in self._told.items()}
+        return [in_flight[trial] for trial in sorted(in_flight)]
+
+    def ask(self, n: int = 1) -> list[Suggestion]:
+        """Return up to n new suggestions; fewer only when a finite space holds no other configuration.
+
+        Raises
+        ------
+        UsageError
+            If n is not positive.
+        """
+        if n < 1:
+            raise UsageError(f"ask({n}): the number of suggestions must be at least 1")
+        suggestions: list[Suggestion] = []
+        for _ in range(n):
+            start = process_time()
+            suggestion = self._suggest(len(self.history) + len(self.pending))
+            if suggestion is None:
+                break
+            suggestion = replace(suggestion, seconds=process_time() - start)
+            self._pending[suggestion.trial] = suggestion
+            suggestions.append(suggestion)
+        return suggestions
+
+    def tell(self, evaluations: Sequence[Evaluation]) -> None:
+        """Record finished evaluations of pending suggestions, in any order.
+
+        They enter the history in the order of their trials, so a later one waits for the earlier ones.
+
+        Raises
+        ------
+        UsageError
+            If a trial was never asked for, or was told before.
+        """
+        for evaluation in evaluations:
+            trial = evaluation.trial
+            if trial not in self._pending:
+                known = ", ".join(map(str, sorted(self._pending))) or "none; call ask() first"
+                raise UsageError(f"tell: trial {trial} is not pending (pending: {known})")
+            self._told[trial] = evaluation
+            del self._pending[trial]
+        while (following := self._told.pop(len(self.history), None)) is not None:
+            self.history.append(following)
+
+    def adopt(self, suggestion: Suggestion) -> None:
+        """Replace the pending suggestion of the same trial, as when part of it has been evaluated before a stop."""
+        self._pending[suggestion.trial] = suggestion
+
+    @abstractmethod
+    def _suggest(self, trial: int) -> Suggestion | None:
+        """Choose the configuration of one trial from the history and the pending ones; None if none is left."""

@@ -1,0 +1,130 @@
+"""The scenario as frozen dataclasses: what the user wrote, with every default filled in.
+
+Components are only named here (`ComponentSpec`); `hypermap_lite.assembly` turns the names into objects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hypermap_lite.objectives import Objective
+from hypermap_lite.typing import Value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComponentSpec:
+    """A replaceable part: its name in the family's table and its options."""
+
+    type: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Keyword arguments of the member's class, without those the user left out."""
+
+    path: str = "$"
+    """Where it stands in the JSON, for messages."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterSpec:
+    """One entry of ``input_parameters``."""
+
+    name: str
+    parameter_type: str
+    values: tuple[Value, ...]
+    """Bounds [low, high] of a real or integer parameter, else its levels."""
+
+    scale: str = "linear"
+    """``linear`` or ``log``."""
+
+    parameter_default: Value | None = None
+    prior: ComponentSpec | None = None
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DesignSpec:
+    """Section ``design_of_experiment``: what is evaluated before there is a model."""
+
+    type: str
+    number_of_samples: int
+    """Points of the design, the default configuration included."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BudgetSpec:
+    """Section ``budget``: when the run ends."""
+
+    evaluations: int = 50
+    """Configurations to evaluate, the design included."""
+
+    batch_size: int = 1
+    """Configurations suggested at a time."""
+
+    minutes: float | None = None
+    """No new batch is started after this wall-clock time [min]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AcquisitionSpec:
+    """Section ``acquisition``: the acquisition function and what is wrapped around it."""
+
+    function: ComponentSpec
+    scalarization: ComponentSpec
+    weights: ComponentSpec
+    prior_weighting: ComponentSpec | None
+    """None if priors shall not enter the acquisition."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvaluatorSpec:
+    """Section ``evaluator``: the black box and how often and how long it is called."""
+
+    component: ComponentSpec | None
+    """None if there is none: the run is driven by ask and tell."""
+
+    replicates: int = 1
+    """Calls per configuration, each with its own seed; objectives are averaged."""
+
+    timeout_seconds: float | None = None
+    """A call that runs longer is killed with everything it started [s]."""
+
+    workers: int = 1
+    """Calls at the same time; does not change the results."""
+
+    max_consecutive_failures: int = 5
+    """The run stops (exit status 4) after so many configurations in a row without a usable result."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OutputSpec:
+    """Section ``output``: where results go."""
+
+    directory: str
+    """Run folder; relative to the working directory."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scenario:
+    """A whole experiment."""
+
+    application_name: str
+    parameters: tuple[ParameterSpec, ...]
+    objectives: tuple[Objective, ...]
+    design: DesignSpec
+    budget: BudgetSpec
+    optimizer: ComponentSpec
+    surrogate: ComponentSpec
+    acquisition: AcquisitionSpec
+    maximizer: ComponentSpec
+    evaluator: EvaluatorSpec
+    output: OutputSpec
+    joint_priors: tuple[ComponentSpec, ...] = ()
+    seed: int = 0
+    description: str = ""
+    canonical: Mapping[str, Any] = field(default_factory=dict)
+    """The effective scenario as JSON: inheritance and overrides applied, every default filled in."""
+
+    directory: Path = field(default_factory=Path)
+    """Folder of the scenario file: evaluators are imported and run from here."""

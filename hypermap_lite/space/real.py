@@ -1,0 +1,95 @@
+"""A real parameter, on a linear or logarithmic axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.space.parameter import Parameter, require_number
+from hypermap_lite.typing import FloatArray, Value
+
+SIGNIFICANT_DIGITS = 13
+"""Decimal digits kept of the range; what is decoded lies on this grid, so it encodes and decodes exactly."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RealParameter(Parameter):
+    """All real numbers from `low` to `high`."""
+
+    low: float
+    high: float
+    log: bool = False
+    """Whether the axis is logarithmic."""
+
+    _start: float = field(init=False, repr=False, compare=False, default=0.0)
+    _span: float = field(init=False, repr=False, compare=False, default=1.0)
+
+    def __post_init__(self) -> None:
+        check_bounds(self.name, self.low, self.high, log=self.log)
+        object.__setattr__(self, "_start", math.log10(self.low) if self.log else self.low)
+        end = math.log10(self.high) if self.log else self.high
+        object.__setattr__(self, "_span", end - self._start)
+
+    @property
+    def n_levels(self) -> int | None:
+        """None: continuous."""
+        return None
+
+    def contains(self, value: object) -> bool:
+        """Tell whether a value is a number within the bounds."""
+        return isinstance(value, int | float) and not isinstance(value, bool) and self.low <= value <= self.high
+
+    def allowed(self) -> str:
+        """Say which values are legal."""
+        return f"a number from {self.low:g} to {self.high:g}"
+
+    def encode(self, values: Sequence[Value]) -> FloatArray:
+        """Return the codes of n native values, shape (n,)."""
+        numbers = np.asarray(values, dtype=float)
+        axis = np.log10(numbers) if self.log else numbers
+        return np.clip((axis - self._start) / self._span, 0.0, 1.0)
+
+    def decode(self, codes: FloatArray) -> list[Value]:
+        """Return the native values of n codes, rounded to a decimal grid far finer than any use."""
+        return [self._round(self._start + float(u) * self._span) for u in codes]
+
+    def _round(self, position: float) -> float:
+        value = 10.0**position if self.log else position
+        magnitude = abs(value) if self.log else self._span
+        digits = SIGNIFICANT_DIGITS - math.ceil(math.log10(magnitude))
+        return min(max(round(value, digits), self.low), self.high)
+
+    def level_codes(self) -> FloatArray:
+        """Raise: a real parameter has no levels."""
+        raise TypeError(f"'{self.name}' is continuous and has no levels")
+
+    def bin_edges(self) -> FloatArray:
+        """Raise: a real parameter has no bins."""
+        raise TypeError(f"'{self.name}' is continuous and has no bins")
+
+    def locate(self, value: float) -> float:
+        """Return where a number lies on the unit axis; below a log axis for numbers <= 0 is an error."""
+        if self.log and value <= 0:
+            raise ScenarioError("$", f"{value:g} has no place on the logarithmic axis of '{self.name}'", allowed="> 0")
+        return ((math.log10(value) if self.log else value) - self._start) / self._span
+
+    def scale_std(self, std: float) -> float:
+        """Return a standard deviation in units of the axis; native units, or decades on a log axis."""
+        return std / self._span
+
+
+def check_bounds(name: str, low: object, high: object, *, log: bool) -> None:
+    """Raise a `ScenarioError` unless low and high are finite numbers in order, and positive on a log axis."""
+    first, last = require_number(low, "$.values[0]", "the bound"), require_number(high, "$.values[1]", "the bound")
+    if first >= last:
+        problem = "are equal" if first == last else "are reversed"
+        hint = f"Make '{name}' a constant of the evaluator." if first == last else "Swap the two numbers."
+        raise ScenarioError(
+            "$.values", f"the bounds [{low}, {high}] {problem}", allowed="[low, high] with low < high", hint=hint
+        )
+    if log and first <= 0:
+        raise ScenarioError("$.values[0]", f"the lower bound {low} of a log scale is not positive", allowed="> 0")
