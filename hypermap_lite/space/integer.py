@@ -30,7 +30,7 @@ class IntegerParameter(Parameter):
 
     def __post_init__(self) -> None:
         for i, bound in enumerate((self.low, self.high)):
-            if isinstance(bound, float) and not bound.is_integer():
+            if not float(bound).is_integer():
                 raise ScenarioError(f"$.values[{i}]", f"the bound {bound} is not whole", allowed="an integer")
         check_bounds(self.name, self.low, self.high, log=self.log)
         object.__setattr__(self, "low", int(self.low))

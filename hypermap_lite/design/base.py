@@ -1,0 +1,61 @@
+"""What an initial design is: the points evaluated before there is a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from hypermap_lite.priors.product import ProductPrior
+from hypermap_lite.space.search_space import SearchSpace
+from hypermap_lite.typing import FloatArray, Rng
+
+MAX_ROUNDS = 100
+"""Attempts to replace repeated points of a finite space before it is enumerated."""
+
+ENUMERATION_LIMIT = 100_000
+"""Finite spaces up to this size are enumerated to find the points that are left."""
+
+
+class InitialDesign(Protocol):
+    """Chooses the first points of a run."""
+
+    def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
+        """Return up to n different legal points, shape (k, d) with k <= n.
+
+        Fewer than n only where a finite space, or a grid, has no more.
+        """
+        ...
+
+
+def distinct(space: SearchSpace, X: FloatArray, n: int, draw: Callable[[int], FloatArray]) -> FloatArray:
+    """Snap points to the space, drop repeats, and draw others until there are n, or the space is exhausted.
+
+    Parameters
+    ----------
+    space
+        The search space.
+    X
+        Points of the unit cube, shape (k, d), in order of preference.
+    n
+        How many are wanted.
+    draw
+        Draws a number of further points, shape (k, d).
+
+    Returns
+    -------
+    FloatArray
+        Different legal points, shape (min(n, n_configurations), d).
+    """
+    points = space.snap(X)
+    points = points[space.unseen(points, ())]
+    for _ in range(MAX_ROUNDS):
+        if len(points) >= min(n, space.n_configurations):
+            return points[:n]
+        more = np.vstack([points, space.snap(draw(n))])
+        points = more[space.unseen(more, ())]
+    if space.n_configurations <= ENUMERATION_LIMIT:
+        rest = np.vstack([points, space.enumerate()])
+        points = rest[space.unseen(rest, ())]
+    return points[:n]

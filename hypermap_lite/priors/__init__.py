@@ -1,0 +1,41 @@
+"""Priors over the optimum: what the user believes, as densities on the unit cube."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from hypermap_lite.priors.base import Density, JointDensity, JointPrior, MarginalPrior
+from hypermap_lite.priors.beta import BetaPrior
+from hypermap_lite.priors.mixture import JointMixturePrior, MixturePrior
+from hypermap_lite.priors.product import AsJoint, ProductPrior
+from hypermap_lite.priors.truncated_gaussian import GaussianPrior
+from hypermap_lite.priors.uniform import UniformPrior
+from hypermap_lite.priors.weights import WeightsPrior
+
+PRIORS: Final[Mapping[str, type[MarginalPrior]]] = {
+    "uniform": UniformPrior,
+    "gaussian": GaussianPrior,
+    "mixture": MixturePrior,
+    "beta": BetaPrior,
+    "weights": WeightsPrior,
+}
+"""JSON name of each prior over one parameter."""
+
+JOINT_PRIORS: Final[Mapping[str, type[JointPrior]]] = {"mixture": JointMixturePrior}
+"""JSON name of each prior over several parameters."""
+
+__all__ = [
+    "JOINT_PRIORS",
+    "PRIORS",
+    "AsJoint",
+    "BetaPrior",
+    "Density",
+    "GaussianPrior",
+    "JointDensity",
+    "JointMixturePrior",
+    "JointPrior",
+    "MarginalPrior",
+    "MixturePrior",
+    "ProductPrior",
+    "UniformPrior",
+    "WeightsPrior",
+]
