@@ -1,0 +1,123 @@
+"""What a surrogate is: options that turn evaluations into a posterior over the objectives.
+
+All objectives are minimized here. The acquisition functions see a posterior through *fields*: functions of X that
+return means and standard deviations for S joint scenarios at once, and can carry a gradient back to X.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from hypermap_lite.typing import BoolArray, FloatArray, Rng
+
+Pullback = Callable[[FloatArray, FloatArray], FloatArray]
+"""Turns derivatives by mean (S, n, m) and std (S or 1, n, m) into derivatives by X, shape (n, d)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """Independent normal predictions of m objectives at n points."""
+
+    mean: FloatArray
+    """Shape (n, m)."""
+
+    std: FloatArray
+    """Standard deviation of the noise-free objective, shape (n, m), >= 0."""
+
+    def __post_init__(self) -> None:
+        if self.mean.shape != self.std.shape or self.mean.ndim != 2:
+            raise ValueError(f"mean {self.mean.shape} and std {self.std.shape} must both have shape (n, m)")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Conditional:
+    """Normal predictions at n points in each of S scenarios."""
+
+    mean: FloatArray
+    """Shape (S, n, m)."""
+
+    std: FloatArray
+    """Shape (S, n, m), or (1, n, m) if all scenarios share it."""
+
+    pullback: Pullback | None = None
+    """Carries gradients back to X; None if the surrogate has none."""
+
+
+Field = Callable[[FloatArray], Conditional]
+"""Predictions as a function of X, shape (n, d)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fantasies:
+    """S joint draws of the noise-free objectives at b base points, and what each draw implies elsewhere."""
+
+    values: FloatArray
+    """The draws, shape (S, b, m)."""
+
+    field: Field
+    """Predictions given each draw."""
+
+
+class Posterior(Protocol):
+    """What is known of m objectives after n evaluations. Immutable."""
+
+    @property
+    def hyperparameters(self) -> Any:
+        """What a later fit may start from; None if there is nothing of the kind."""
+        ...
+
+    @property
+    def is_differentiable(self) -> bool:
+        """Whether its fields carry gradients."""
+        ...
+
+    def predict(self, X: FloatArray) -> Prediction:
+        """Predict the noise-free objectives at n points, shape (n, d)."""
+        ...
+
+    def field(self, X: FloatArray) -> Conditional:
+        """Predict as `predict` does, as a field with a single scenario."""
+        ...
+
+    def believe(self, X_pending: FloatArray) -> Posterior:
+        """Return the posterior if the pending points, shape (p, d), came out at their predicted means."""
+        ...
+
+    def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
+        """Draw the noise-free objectives at all observed and pending points n times, jointly."""
+        ...
+
+    def sample_path(self, rng: Rng, features: int) -> Field:
+        """Draw one function from the posterior; its std is zero everywhere."""
+        ...
+
+
+class Surrogate(Protocol):
+    """Options of a model. It does not change when it is fitted."""
+
+    def fit(self, X: FloatArray, Y: FloatArray, *, is_ordered: BoolArray, rng: Rng, start: Any = None) -> Posterior:
+        """Fit m objectives to n evaluations.
+
+        Parameters
+        ----------
+        X
+            Points of the unit cube, shape (n, d), n >= 1.
+        Y
+            Objectives to be minimized, shape (n, m), finite.
+        is_ordered
+            Which axes have an order, shape (d,); the others are categorical.
+        rng
+            Source of all randomness.
+        start
+            `hyperparameters` of an earlier posterior to start from.
+        """
+        ...
+
+
+def as_prediction(conditional: Conditional) -> Prediction:
+    """Return a field's answer with a single scenario as a prediction."""
+    return Prediction(mean=conditional.mean[0], std=np.broadcast_to(conditional.std, conditional.mean.shape)[0])

@@ -1,0 +1,166 @@
+"""One Gaussian process per objective, in NumPy with closed-form gradients."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import ndtri
+
+from hypermap_lite.surrogates.base import Conditional, Fantasies, Field, Posterior, Prediction, as_prediction
+from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
+from hypermap_lite.surrogates.marginal_likelihood import (
+    Hyperparameters,
+    HyperPrior,
+    MarginalLikelihood,
+    fit_hyperparameters,
+)
+from hypermap_lite.surrogates.paths import Path
+from hypermap_lite.surrogates.process import Process, ProcessField, Standardized
+from hypermap_lite.typing import BoolArray, FloatArray, Rng
+
+FANTASY_JITTER = 1e-8
+"""Jitter of the noise-free covariance of fantasies, relative to the output variance."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaussianProcess:
+    """Independent Gaussian processes with a Matern-5/2 kernel, one lengthscale per axis, and a constant mean."""
+
+    noise: bool = True
+    """Whether evaluations are noisy; the noise is then learned."""
+
+    def fit(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        *,
+        is_ordered: BoolArray,
+        rng: Rng,
+        start: Sequence[Hyperparameters] | None = None,
+    ) -> Posterior:
+        """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
+        outputs = [Standardized.of(column) for column in Y.T]
+        prior = HyperPrior(X.shape[1], has_noise=self.noise)
+        processes = []
+        for k, output in enumerate(outputs):
+            likelihood = MarginalLikelihood(X, output.values, is_ordered, prior)
+            starts = [prior.mode()] if start is None else [start[k], prior.mode()]
+            best = fit_hyperparameters(likelihood, starts)
+            processes.append(Process.condition(X, output, best, is_ordered))
+        return GaussianProcessPosterior(processes=tuple(processes))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaussianProcessPosterior:
+    """What the processes know of m objectives."""
+
+    processes: tuple[Process, ...]
+
+    @property
+    def hyperparameters(self) -> tuple[Hyperparameters, ...]:
+        """Hyperparameters of each objective."""
+        return tuple(p.hyperparameters for p in self.processes)
+
+    @property
+    def is_differentiable(self) -> bool:
+        """True: all fields carry gradients."""
+        return True
+
+    def predict(self, X: FloatArray) -> Prediction:
+        """Predict the noise-free objectives at n points, shape (n, d)."""
+        return as_prediction(self.field(X))
+
+    def field(self, X: FloatArray) -> Conditional:
+        """Predict the noise-free objectives as a field with one scenario."""
+        return combine([p.field_given(p.X, p.L, p.alpha[:, None]) for p in self.processes], X)
+
+    def believe(self, X_pending: FloatArray) -> GaussianProcessPosterior:
+        """Return the posterior if the pending points came out at their predicted means (a Kriging believer [1]_).
+
+        References
+        ----------
+        .. [1] Ginsbourger, Le Riche, Carraro. Kriging Is Well-Suited to Parallelize Optimization. 2010.
+        """
+        if not len(X_pending):
+            return self
+        believed = []
+        for p in self.processes:
+            values = np.concatenate([p.output.values, p.joint(X_pending)[0]])
+            X = np.vstack([p.X, X_pending])
+            output = replace(p.output, values=values)
+            believed.append(Process.condition(X, output, p.hyperparameters, p.kernel.is_ordered))
+        return GaussianProcessPosterior(processes=tuple(believed))
+
+    def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
+        """Draw the noise-free objectives at all observed and pending points by quasi-Monte Carlo, jointly [1]_.
+
+        Between the base points each draw is continued by the closed form of a noise-free process.
+
+        References
+        ----------
+        .. [1] Letham et al. Constrained Bayesian Optimization with Noisy Experiments. Bayesian Analysis, 2019.
+        """
+        base = np.vstack([self.processes[0].X, X_pending])
+        normal = quasi_normal(n, len(base) * len(self.processes), rng).reshape(n, len(self.processes), len(base))
+        values, fields = [], []
+        for k, p in enumerate(self.processes):
+            mean, covariance = p.joint(base)
+            root = safe_cholesky(covariance, FANTASY_JITTER)
+            draws = mean[:, None] + (root @ normal[:, k].T if root is not None else 0.0) * np.ones((1, n))  # (b, n)
+            K = p.hyperparameters.output_variance * p.kernel(base, base)
+            L = safe_cholesky(K, FANTASY_JITTER)
+            if L is None:
+                L = np.eye(len(base)) * 1e6
+            weights = solve_lower(L, solve_lower(L, draws - p.mean), transposed=True)
+            values.append(p.output.offset + p.output.scale * draws.T)
+            fields.append(p.field_given(base, L, weights))
+        return Fantasies(values=np.stack(values, axis=2), field=lambda X: combine(fields, X))
+
+    def sample_path(self, rng: Rng, features: int) -> Field:
+        """Draw one function: random Fourier features for the prior, corrected by the data (pathwise) [1]_.
+
+        References
+        ----------
+        .. [1] Wilson et al. Efficiently Sampling Functions from Gaussian Process Posteriors. ICML 2020.
+        """
+        paths = [Path.draw(p, features, rng) for p in self.processes]
+
+        def field(X: FloatArray) -> Conditional:
+            answers = [path(X) for path in paths]
+            mean = np.stack([value for value, _ in answers], axis=1)[None]  # (1, n, m)
+
+            def pullback(by_mean: FloatArray, by_std: FloatArray) -> FloatArray:
+                return np.sum([by_mean[0, :, k, None] * gradient for k, (_, gradient) in enumerate(answers)], axis=0)
+
+            return Conditional(mean=mean, std=np.zeros_like(mean), pullback=pullback)
+
+        return field
+
+
+def combine(fields: Sequence[ProcessField], X: FloatArray) -> Conditional:
+    """Return the predictions of all objectives together."""
+    answers = [field(X) for field in fields]
+    mean = np.stack([a[0] for a in answers], axis=2)  # (S, n, m)
+    std = np.stack([a[1] for a in answers], axis=1)[None]  # (1, n, m)
+
+    def pullback(by_mean: FloatArray, by_std: FloatArray) -> FloatArray:
+        std_total = by_std.sum(axis=0)
+        return np.sum([a[2](by_mean[:, :, k], std_total[:, k]) for k, a in enumerate(answers)], axis=0)
+
+    return Conditional(mean=mean, std=std, pullback=pullback)
+
+
+def quasi_normal(n: int, dimension: int, rng: Rng) -> FloatArray:
+    """Return n standard normal draws from a scrambled Sobol sequence, shape (n, dimension).
+
+    Beyond the sequence's largest dimension the rest is filled with ordinary draws.
+    """
+    from scipy.stats import qmc
+
+    sobol_dimension = min(dimension, qmc.Sobol.MAXDIM)
+    exponent = max(n - 1, 0).bit_length()
+    points = qmc.Sobol(sobol_dimension, scramble=True, rng=rng).random_base2(exponent)[:n]
+    normal = ndtri(np.clip(points, 1e-12, 1 - 1e-12))
+    return np.hstack([normal, rng.standard_normal((n, dimension - sobol_dimension))])

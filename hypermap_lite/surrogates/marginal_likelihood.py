@@ -1,0 +1,174 @@
+"""Hyperparameters of a Gaussian process: their priors, and the fit to the data."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import get_lapack_funcs
+
+from hypermap_lite.surrogates.kernels import MaternHammingKernel
+from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
+from hypermap_lite.typing import BoolArray, FloatArray
+
+logger = logging.getLogger(__name__)
+
+LENGTHSCALE_BOUNDS = (0.01, 100.0)
+OUTPUT_VARIANCE_BOUNDS = (0.01, 100.0)
+NOISE_FLOOR = 1e-6
+"""Smallest noise variance, in units of the standardized outputs; also that of a model without noise."""
+
+NOISE_CEILING = 4.0
+MAX_ITERATIONS = 100
+REJECTED = 1e25
+"""Value of the objective function where the covariance cannot be factorized."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hyperparameters:
+    """Hyperparameters of one objective's process, for standardized outputs."""
+
+    lengthscales: FloatArray
+    """Shape (d,), in units of the cube."""
+
+    output_variance: float = 1.0
+    noise_variance: float = 1e-2
+
+    def to_log(self) -> FloatArray:
+        """Return their logarithms, shape (d + 2,): lengthscales, output variance, noise variance."""
+        return np.log(np.array([*self.lengthscales, self.output_variance, self.noise_variance]))
+
+    @classmethod
+    def from_log(cls, theta: FloatArray) -> Hyperparameters:
+        """Make them from their logarithms."""
+        return cls(np.exp(theta[:-2]), float(np.exp(theta[-2])), float(np.exp(theta[-1])))
+
+
+@dataclass(frozen=True, slots=True)
+class HyperPrior:
+    """Log-normal priors on lengthscales and noise, normal on the log output variance.
+
+    The lengthscale prior grows with the square root of the dimension [1]_, which keeps the complexity of the model
+    constant; that and the noise prior, LogNormal(-4, 1), are those of BoTorch's default model.
+
+    References
+    ----------
+    .. [1] Hvarfner, Hellsten, Nardi. Vanilla Bayesian Optimization Performs Great in High Dimensions. ICML 2024.
+    """
+
+    dimension: int
+    has_noise: bool = True
+    lengthscale_sigma: float = math.sqrt(3.0)
+    noise_mu: float = -4.0
+    noise_sigma: float = 1.0
+    output_sigma: float = 1.0
+
+    @property
+    def lengthscale_mu(self) -> float:
+        """Location of the lengthscale prior."""
+        return math.sqrt(2.0) + 0.5 * math.log(self.dimension)
+
+    def mode(self) -> Hyperparameters:
+        """Return the most likely hyperparameters before any data."""
+        lengthscale = math.exp(self.lengthscale_mu - self.lengthscale_sigma**2)
+        noise = math.exp(self.noise_mu - self.noise_sigma**2) if self.has_noise else NOISE_FLOOR
+        return Hyperparameters(np.full(self.dimension, lengthscale), 1.0, noise)
+
+    def bounds(self) -> FloatArray:
+        """Return the bounds of the log hyperparameters, shape (d + 2, 2)."""
+        noise = (NOISE_FLOOR, NOISE_CEILING) if self.has_noise else (NOISE_FLOOR, NOISE_FLOOR)
+        return np.log(np.array([*[LENGTHSCALE_BOUNDS] * self.dimension, OUTPUT_VARIANCE_BOUNDS, noise]))
+
+    def penalty(self, theta: FloatArray) -> tuple[float, FloatArray]:
+        """Return the negative log prior density (a constant left out) and its gradient by theta, shape (d + 2,)."""
+        mu = np.array([*[self.lengthscale_mu] * self.dimension, 0.0, self.noise_mu])
+        sigma = np.array([*[self.lengthscale_sigma] * self.dimension, self.output_sigma, self.noise_sigma])
+        # A log-normal density has the factor 1/x besides the normal one of log x.
+        jacobian = np.array([*[1.0] * self.dimension, 0.0, 1.0])
+        z = (theta - mu) / sigma
+        value = 0.5 * z * z + jacobian * theta
+        gradient = z / sigma + jacobian
+        if not self.has_noise:
+            value[-1], gradient[-1] = 0.0, 0.0
+        return float(value.sum()), gradient
+
+
+@dataclass(frozen=True, slots=True)
+class MarginalLikelihood:
+    """The negative log posterior of the hyperparameters of one objective; the constant mean is profiled out."""
+
+    X: FloatArray
+    """Shape (n, d)."""
+
+    y: FloatArray
+    """Standardized outputs, shape (n,)."""
+
+    is_ordered: BoolArray
+    prior: HyperPrior
+
+    def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
+        """Return the value and its gradient by the log hyperparameters, shape (d + 2,).
+
+        The mean that maximizes the likelihood, (1' K^-1 y) / (1' K^-1 1), depends on theta, but at a maximum that
+        dependence adds nothing to the gradient.
+        """
+        h = Hyperparameters.from_log(theta)
+        kernel = MaternHammingKernel(h.lengthscales, self.is_ordered)
+        C, H = kernel.parts(self.X, self.X)
+        K = h.output_variance * C
+        K.flat[:: len(K) + 1] += h.noise_variance
+        L = safe_cholesky(K)
+        if L is None:
+            return REJECTED, np.zeros_like(theta)
+        K_inverse = inverse_from_cholesky(L)
+        residual = self.y - constant_mean(K_inverse, self.y)
+        alpha = K_inverse @ residual
+        value = 0.5 * residual @ alpha + np.log(np.diag(L)).sum() + 0.5 * len(self.y) * math.log(2 * math.pi)
+        W = 0.5 * (K_inverse - np.outer(alpha, alpha))
+        gradient = np.empty_like(theta)
+        gradient[:-2] = h.output_variance * kernel.pull_log_lengthscales(W, C, H, self.X)
+        gradient[-2] = h.output_variance * np.vdot(W, C)
+        gradient[-1] = h.noise_variance * np.trace(W)
+        penalty, penalty_gradient = self.prior.penalty(theta)
+        return float(value + penalty), gradient + penalty_gradient
+
+
+def constant_mean(K_inverse: FloatArray, y: FloatArray) -> float:
+    """Return the generalized least-squares mean of correlated values."""
+    weights = K_inverse.sum(axis=0)
+    return float(weights @ y / weights.sum())
+
+
+def inverse_from_cholesky(L: FloatArray) -> FloatArray:
+    """Return (L L')^-1, shape (n, n)."""
+    (potri,) = get_lapack_funcs(("potri",), (L,))
+    inverse, status = potri(L, lower=1)
+    if status != 0:
+        half = solve_lower(L, np.eye(len(L)))
+        return half.T @ half
+    lower = np.tril(inverse)
+    return lower + np.tril(lower, -1).T
+
+
+def fit_hyperparameters(likelihood: MarginalLikelihood, starts: Sequence[Hyperparameters]) -> Hyperparameters:
+    """Return the most likely hyperparameters found by L-BFGS-B from the given starts.
+
+    Falls back to the mode of the prior, with a warning, if no start leads to a finite value.
+    """
+    from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
+
+    bounds = likelihood.prior.bounds()
+    best, best_value = likelihood.prior.mode(), math.inf
+    for start in starts:
+        theta = np.clip(start.to_log(), bounds[:, 0], bounds[:, 1])
+        result = minimize(
+            likelihood, theta, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": MAX_ITERATIONS}
+        )
+        if np.isfinite(result.fun) and result.fun < min(best_value, REJECTED):
+            best, best_value = Hyperparameters.from_log(result.x), float(result.fun)
+    if not math.isfinite(best_value):
+        logger.warning("the Gaussian process could not be fitted; using the mode of its hyperparameter prior")
+    return best

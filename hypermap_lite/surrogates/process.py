@@ -1,0 +1,113 @@
+"""One objective's Gaussian process, conditioned on its data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hypermap_lite.surrogates.kernels import MaternHammingKernel
+from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
+from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, constant_mean, inverse_from_cholesky
+from hypermap_lite.typing import BoolArray, FloatArray
+
+STD_FLOOR = 1e-9
+"""Smallest predicted standard deviation, in units of the standardized outputs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Standardized:
+    """Outputs of one objective with mean 0 and standard deviation 1."""
+
+    values: FloatArray
+    """Shape (n,)."""
+
+    offset: float
+    scale: float
+
+    @classmethod
+    def of(cls, y: FloatArray) -> Standardized:
+        """Standardize n outputs; constant ones keep scale 1, and huge ones do not overflow."""
+        magnitude = max(float(np.abs(y).max()), 1e-300)
+        small = y / magnitude
+        spread = float(small.std())
+        scale = spread if spread > 1e-12 else 1.0 / magnitude if 1.0 / magnitude < 1e12 else 1.0
+        offset = float(small.mean())
+        return cls((small - offset) / scale, offset * magnitude, scale * magnitude)
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """One objective's process given its data, in standardized outputs."""
+
+    X: FloatArray
+    output: Standardized
+    hyperparameters: Hyperparameters
+    kernel: MaternHammingKernel
+    mean: float
+    L: FloatArray
+    """Cholesky factor of the covariance of the data, noise included, shape (n, n)."""
+
+    alpha: FloatArray
+    """K^-1 (y - mean), shape (n,)."""
+
+    @classmethod
+    def condition(cls, X: FloatArray, output: Standardized, h: Hyperparameters, is_ordered: BoolArray) -> Process:
+        """Condition a process with known hyperparameters on the data.
+
+        If the covariance cannot be factorized even with jitter, the data count as pure noise, so that the
+        prediction is their mean with the full output variance.
+        """
+        kernel = MaternHammingKernel(h.lengthscales, is_ordered)
+        K = h.output_variance * kernel(X, X)
+        K.flat[:: len(X) + 1] += h.noise_variance
+        L = safe_cholesky(K)
+        if L is None:
+            L = np.eye(len(X)) * 1e6
+        mean = constant_mean(inverse_from_cholesky(L), output.values)
+        residual = output.values - mean
+        alpha = solve_lower(L, solve_lower(L, residual), transposed=True)
+        return cls(X, output, h, kernel, mean, L, alpha)
+
+    def field_given(self, base: FloatArray, L: FloatArray, weights: FloatArray) -> ProcessField:
+        """Return predictions mean + k(x, base) weights, with the variance left by the factor L."""
+        return ProcessField(self, base, L, weights)
+
+    def joint(self, B: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return mean, shape (b,), and covariance, shape (b, b), of the noise-free outputs at b points."""
+        s2 = self.hyperparameters.output_variance
+        cross = s2 * self.kernel(self.X, B)
+        v = solve_lower(self.L, cross)
+        return self.mean + cross.T @ self.alpha, s2 * self.kernel(B, B) - v.T @ v
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessField:
+    """Predictions of one objective at new points, in S scenarios that differ in their weights only."""
+
+    process: Process
+    base: FloatArray
+    """Points conditioned on, shape (b, d)."""
+
+    L: FloatArray
+    """Cholesky factor of their covariance, shape (b, b)."""
+
+    weights: FloatArray
+    """Covariance^-1 times the centred values of each scenario, shape (b, S)."""
+
+    def __call__(self, X: FloatArray) -> tuple[FloatArray, FloatArray, Callable[[FloatArray, FloatArray], FloatArray]]:
+        """Return mean (S, n), std (n,) in the objective's units, and the pullback of their derivatives to X."""
+        p = self.process
+        s2, scale = p.hyperparameters.output_variance, p.output.scale
+        C, H = p.kernel.parts(X, self.base)
+        v = solve_lower(self.L, s2 * C.T)  # (b, n)
+        std = np.sqrt(np.maximum(s2 - np.einsum("bn,bn->n", v, v), STD_FLOOR**2))
+        mean = p.output.offset + scale * (p.mean + s2 * (C @ self.weights).T)
+
+        def pullback(by_mean: FloatArray, by_std: FloatArray) -> FloatArray:
+            u = solve_lower(self.L, v, transposed=True).T  # (n, b): K^-1 k
+            by_k = scale * (by_mean.T @ self.weights.T - (by_std / std)[:, None] * u)
+            return p.kernel.pull_coordinates(s2 * by_k * H, X, self.base)
+
+        return mean, scale * std, pullback

@@ -1,0 +1,160 @@
+"""A random forest per objective, on scikit-learn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.surrogates.base import Conditional, Fantasies, Field, Posterior, Prediction
+from hypermap_lite.typing import BoolArray, FloatArray, Rng
+
+if TYPE_CHECKING:
+    from sklearn.ensemble import RandomForestRegressor
+
+VARIANCE_FLOOR = 1e-8
+"""Smallest variance of a leaf, relative to the variance of the outputs."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RandomForest:
+    """Independent random forests; a tree is one draw of what the objective may be.
+
+    The predicted variance is the total variance over the trees: the mean of the leaves' variances plus the variance
+    of the leaves' means [1]_. Categorical axes are split as ordered codes, which a deep tree can refine.
+
+    References
+    ----------
+    .. [1] Hutter, Xu, Hoos, Leyton-Brown. Algorithm Runtime Prediction: Methods & Evaluation, sec. 4.3.2. AIJ 2014.
+    """
+
+    number_of_trees: int = 100
+    max_features: float = 0.5
+    """Share of the axes looked at for each split, in (0, 1]."""
+
+    min_samples_leaf: int = 2
+
+    def __post_init__(self) -> None:
+        if self.number_of_trees < 2:
+            raise ScenarioError("$.number_of_trees", f"{self.number_of_trees} trees give no variance", allowed=">= 2")
+        if not 0 < self.max_features <= 1:
+            raise ScenarioError("$.max_features", f"the share is {self.max_features}", allowed="in (0, 1]")
+        if self.min_samples_leaf < 1:
+            raise ScenarioError("$.min_samples_leaf", f"it is {self.min_samples_leaf}", allowed=">= 1")
+
+    def fit(self, X: FloatArray, Y: FloatArray, *, is_ordered: BoolArray, rng: Rng, start: Any = None) -> Posterior:
+        """Fit one forest per objective; see `Surrogate.fit`."""
+        seed = int(rng.integers(2**31))
+        return ForestPosterior(options=self, X=X, Y=Y, seed=seed, forests=self.grow(X, Y, seed))
+
+    def grow(self, X: FloatArray, Y: FloatArray, seed: int) -> tuple[Forest, ...]:
+        """Return one forest per objective."""
+        from sklearn.ensemble import RandomForestRegressor  # slow to import, used here only
+
+        forests = []
+        for k, y in enumerate(Y.T):
+            offset, magnitude = float(y[0]), max(float(np.abs(y - y[0]).max()), 1e-300)
+            regressor = RandomForestRegressor(
+                n_estimators=self.number_of_trees,
+                max_features=self.max_features,
+                min_samples_leaf=self.min_samples_leaf,
+                bootstrap=True,
+                random_state=(seed + k) % 2**31,
+            )
+            scaled = (y - offset) / magnitude
+            forests.append(Forest.of(regressor.fit(X, scaled), offset, magnitude, float(scaled.var())))
+        return tuple(forests)
+
+
+@dataclass(frozen=True, slots=True)
+class Forest:
+    """One objective's trees, with mean and variance of every leaf."""
+
+    regressor: RandomForestRegressor
+    leaf_means: list[FloatArray]
+    leaf_variances: list[FloatArray]
+    offset: float
+    scale: float
+
+    @classmethod
+    def of(cls, regressor: RandomForestRegressor, offset: float, scale: float, variance: float) -> Forest:
+        """Read the leaves of a fitted regressor whose outputs have the given variance."""
+        floor = VARIANCE_FLOOR * variance + 1e-300
+        trees = [estimator.tree_ for estimator in regressor.estimators_]
+        means = [tree.value[:, 0, 0] for tree in trees]
+        variances = [np.maximum(tree.impurity, floor) for tree in trees]
+        return cls(regressor, means, variances, offset, scale)
+
+    def per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return mean and standard deviation of the leaf of each of T trees at n points, both (T, n)."""
+        leaves = self.regressor.apply(X).T
+        mean = np.array([m[index] for m, index in zip(self.leaf_means, leaves, strict=True)])
+        variance = np.array([v[index] for v, index in zip(self.leaf_variances, leaves, strict=True)])
+        return self.offset + self.scale * mean, self.scale * np.sqrt(variance)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ForestPosterior:
+    """What the forests know of m objectives."""
+
+    options: RandomForest
+    X: FloatArray
+    Y: FloatArray
+    seed: int
+    forests: tuple[Forest, ...]
+
+    @property
+    def hyperparameters(self) -> None:
+        """None: a forest is grown afresh."""
+        return
+
+    @property
+    def is_differentiable(self) -> bool:
+        """False: a forest is piecewise constant."""
+        return False
+
+    def _per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        answers = [forest.per_tree(X) for forest in self.forests]
+        return np.stack([a[0] for a in answers], axis=2), np.stack([a[1] for a in answers], axis=2)
+
+    def predict(self, X: FloatArray) -> Prediction:
+        """Predict m objectives at n points, shape (n, d), by the total variance over the trees."""
+        mean, std = self._per_tree(X)
+        return Prediction(mean=mean.mean(axis=0), std=np.sqrt((std**2).mean(axis=0) + mean.var(axis=0)))
+
+    def field(self, X: FloatArray) -> Conditional:
+        """Predict as `predict` does, as a field with one scenario."""
+        prediction = self.predict(X)
+        return Conditional(mean=prediction.mean[None], std=prediction.std[None])
+
+    def believe(self, X_pending: FloatArray) -> ForestPosterior:
+        """Return the forests grown with the pending points at their predicted means."""
+        if not len(X_pending):
+            return self
+        X, Y = np.vstack([self.X, X_pending]), np.vstack([self.Y, self.predict(X_pending).mean])
+        forests = self.options.grow(X, Y, self.seed)
+        return ForestPosterior(options=self.options, X=X, Y=Y, seed=self.seed, forests=forests)
+
+    def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
+        """Take every tree as a draw (so there are as many as trees, whatever n); pending points by `believe`."""
+        believed = self.believe(X_pending)
+        values = believed._per_tree(believed.X)[0]  # (T, b, m)
+
+        def field(X: FloatArray) -> Conditional:
+            mean, std = believed._per_tree(X)
+            return Conditional(mean=mean, std=std)
+
+        return Fantasies(values=values, field=field)
+
+    def sample_path(self, rng: Rng, features: int) -> Field:
+        """Take one tree of each forest as the function."""
+        chosen = rng.integers(self.options.number_of_trees, size=len(self.forests))
+
+        def field(X: FloatArray) -> Conditional:
+            mean = self._per_tree(X)[0]
+            path = np.stack([mean[t, :, k] for k, t in enumerate(chosen)], axis=1)[None]
+            return Conditional(mean=path, std=np.zeros_like(path))
+
+        return field
