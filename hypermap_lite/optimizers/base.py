@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from time import process_time
 
+import numpy as np
+
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.history.history import History
@@ -75,6 +77,12 @@ class Optimizer(ABC):
     def adopt(self, suggestion: Suggestion) -> None:
         """Replace the pending suggestion of the same trial, as when part of it has been evaluated before a stop."""
         self._pending[suggestion.trial] = suggestion
+
+    def taken_keys(self) -> list[bytes]:
+        """Return the keys of all configurations that are in the history or pending."""
+        space = self.history.space
+        pending = space.encode([s.configuration for s in self.pending])
+        return space.keys(np.vstack([self.history.X_all(), pending]))
 
     @abstractmethod
     def _suggest(self, trial: int) -> Suggestion | None:

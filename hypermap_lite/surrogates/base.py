@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -98,6 +98,9 @@ class Posterior(Protocol):
 
 class Surrogate(Protocol):
     """Options of a model. It does not change when it is fitted."""
+
+    starts_warm: ClassVar[bool]
+    """Whether a fit gains from the hyperparameters of an earlier one."""
 
     def fit(self, X: FloatArray, Y: FloatArray, *, is_ordered: BoolArray, rng: Rng, start: Any = None) -> Posterior:
         """Fit m objectives to n evaluations.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from scipy.special import ndtri
@@ -30,6 +31,8 @@ class GaussianProcess:
 
     noise: bool = True
     """Whether evaluations are noisy; the noise is then learned."""
+
+    starts_warm: ClassVar[bool] = True
 
     def fit(
         self,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -35,6 +35,7 @@ class RandomForest:
     """Share of the axes looked at for each split, in (0, 1]."""
 
     min_samples_leaf: int = 2
+    starts_warm: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         if self.number_of_trees < 2:

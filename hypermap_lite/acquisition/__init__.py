@@ -1,0 +1,32 @@
+"""Acquisition functions: which point is worth the next evaluation."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
+from hypermap_lite.acquisition.expected_improvement import ExpectedImprovement
+from hypermap_lite.acquisition.noisy_expected_improvement import NoisyExpectedImprovement
+from hypermap_lite.acquisition.prior_weighted import PriorWeighted, PriorWeighting
+from hypermap_lite.acquisition.thompson_sampling import ThompsonSampling
+from hypermap_lite.acquisition.upper_confidence_bound import UpperConfidenceBound
+
+ACQUISITIONS: Final[Mapping[str, type[Acquisition]]] = {
+    "noisy_expected_improvement": NoisyExpectedImprovement,
+    "expected_improvement": ExpectedImprovement,
+    "upper_confidence_bound": UpperConfidenceBound,
+    "thompson_sampling": ThompsonSampling,
+}
+"""JSON name of each acquisition function."""
+
+__all__ = [
+    "ACQUISITIONS",
+    "Acquisition",
+    "AcquisitionContext",
+    "ExpectedImprovement",
+    "NoisyExpectedImprovement",
+    "PriorWeighted",
+    "PriorWeighting",
+    "Scorer",
+    "ThompsonSampling",
+    "UpperConfidenceBound",
+]

@@ -1,0 +1,61 @@
+"""What an acquisition function is: how promising a point is, given what is known.
+
+Larger is better. An acquisition function is options; for one suggestion it becomes a `Scorer`, so that whatever is
+drawn at random is drawn once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from hypermap_lite.scalarization.base import Normalization, Scalarization
+from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.typing import FloatArray, Rng
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AcquisitionContext:
+    """All an acquisition function may know when it becomes a scorer. Objectives are to be minimized."""
+
+    posterior: Posterior
+    X: FloatArray
+    """Completed evaluations, shape (n, d)."""
+
+    Y: FloatArray
+    """Their objectives, shape (n, m)."""
+
+    X_pending: FloatArray
+    """Configurations under evaluation, shape (p, d)."""
+
+    scalarization: Scalarization
+    weights: FloatArray
+    """Of the scalarization, for this suggestion, shape (m,)."""
+
+    normalization: Normalization
+    rng: Rng
+
+
+class Scorer(Protocol):
+    """The acquisition function of one suggestion."""
+
+    @property
+    def is_differentiable(self) -> bool:
+        """Whether `with_gradient` may be called."""
+        ...
+
+    def __call__(self, X: FloatArray) -> FloatArray:
+        """Return the scores of n points of the cube, shape (n, d), as shape (n,)."""
+        ...
+
+    def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the scores, shape (n,), and their gradients, shape (n, d), zero along categorical axes."""
+        ...
+
+
+class Acquisition(Protocol):
+    """Options of an acquisition function."""
+
+    def scorer(self, context: AcquisitionContext) -> Scorer:
+        """Become the scorer of one suggestion."""
+        ...

@@ -1,0 +1,253 @@
+"""The composition root: names in a scenario become objects here, and only here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from hypermap_lite.acquisition import ACQUISITIONS, PriorWeighting
+from hypermap_lite.design import DESIGNS, InitialDesign, PriorSampling, RandomSampling
+from hypermap_lite.errors import ScenarioError, nearest
+from hypermap_lite.evaluation import EVALUATORS
+from hypermap_lite.evaluation.evaluator import Evaluator
+from hypermap_lite.evaluation.python_function import PythonFunction
+from hypermap_lite.history.history import History
+from hypermap_lite.maximizers import MAXIMIZERS
+from hypermap_lite.optimizers import OPTIMIZERS, Optimizer
+from hypermap_lite.optimizers.bayesian import BayesianOptimizer, Method
+from hypermap_lite.optimizers.initial import InitialPhase
+from hypermap_lite.optimizers.sampling import SamplingOptimizer, SamplingPhase
+from hypermap_lite.priors import JOINT_PRIORS, PRIORS, AsJoint, Density, JointDensity, ProductPrior
+from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS, BoundingBox, WeightSampling
+from hypermap_lite.scenario.model import ComponentSpec, ParameterSpec, Scenario
+from hypermap_lite.space import (
+    PARAMETERS,
+    Parameter,
+    SearchSpace,
+)
+from hypermap_lite.surrogates import SURROGATES
+
+Member = TypeVar("Member")
+
+SAMPLING_PHASES: Mapping[str, SamplingPhase] = {
+    "random_search": SamplingPhase(design=RandomSampling(), name="random"),
+    "prior_sampling": SamplingPhase(design=PriorSampling(), name="prior"),
+}
+"""What the optimizers without a model do after the initial design."""
+
+PRIOR_WEIGHTINGS: Mapping[str, type[PriorWeighting]] = {"pibo": PriorWeighting}
+"""JSON name of each way the prior enters the acquisition function."""
+
+
+def build_member(family: Mapping[str, type[Member]], spec: ComponentSpec, kind: str, **extra: Any) -> Member:
+    """Make the member of a family that a specification names.
+
+    Raises
+    ------
+    ScenarioError
+        If the family has no such member, or the member refuses its options.
+    """
+    if spec.type not in family:
+        known = ", ".join(family)
+        hint = nearest(spec.type, family)
+        raise ScenarioError(f"{spec.path}.type", f"unknown {kind} {spec.type!r}", allowed=known, hint=hint)
+    try:
+        return family[spec.type](**spec.options, **extra)
+    except ScenarioError as error:
+        raise error.below(spec.path) from None
+    except TypeError as error:
+        raise ScenarioError(spec.path, f"the options of the {kind} {spec.type!r} do not fit: {error}") from None
+
+
+def build_parameter(spec: ParameterSpec) -> Parameter:
+    """Make one parameter.
+
+    Raises
+    ------
+    ScenarioError
+        If its type is unknown, its values make no range, or its default is not one of them.
+    """
+    path = f"$.input_parameters.{spec.name}"
+    if spec.parameter_type not in PARAMETERS:
+        known, hint = ", ".join(PARAMETERS), nearest(spec.parameter_type, PARAMETERS)
+        raise ScenarioError(f"{path}.parameter_type", f"unknown type {spec.parameter_type!r}", allowed=known, hint=hint)
+    options: dict[str, Any] = {"name": spec.name, "default": spec.parameter_default}
+    if spec.parameter_type in ("real", "integer"):
+        options |= {"low": spec.values[0], "high": spec.values[1], "log": spec.scale == "log"}
+    else:
+        options["values"] = spec.values
+    try:
+        parameter = PARAMETERS[spec.parameter_type](**options)
+    except ScenarioError as error:
+        raise error.below(path) from None
+    if spec.parameter_default is not None and not parameter.contains(spec.parameter_default):
+        problem = f"the default {spec.parameter_default!r} is not a legal value"
+        raise ScenarioError(f"{path}.parameter_default", problem, allowed=parameter.allowed())
+    return parameter
+
+
+def build_space(scenario: Scenario) -> SearchSpace:
+    """Make the search space."""
+    return SearchSpace(tuple(build_parameter(spec) for spec in scenario.parameters))
+
+
+def build_prior(scenario: Scenario, space: SearchSpace) -> ProductPrior:
+    """Make the whole belief: the product of the priors on single parameters and on groups of them.
+
+    Raises
+    ------
+    ScenarioError
+        If a joint prior names an unknown parameter, or a parameter has two priors.
+    """
+    factors: list[tuple[tuple[int, ...], JointDensity]] = []
+    owners: dict[str, str] = {}
+    for j, spec in enumerate(scenario.parameters):
+        if spec.prior is not None and spec.prior.type != "uniform":
+            owners[spec.name] = spec.prior.path
+            factors.append(((j,), AsJoint(_marginal_density(spec, spec.prior, space.parameters[j]))))
+    factors.extend(_joint_factor(joint, space, owners) for joint in scenario.joint_priors)
+    return ProductPrior(space.dimension, tuple(factors))
+
+
+def _marginal_density(spec: ParameterSpec, prior: ComponentSpec, parameter: Parameter) -> Density:
+    if prior.type == "weights" and spec.parameter_type == "ordinal":
+        prior = _in_rising_order(prior, spec)
+    try:
+        return build_member(PRIORS, prior, "prior").on(parameter)
+    except ScenarioError as error:
+        raise (error if error.path.startswith(prior.path) else error.below(prior.path)) from None
+
+
+def _in_rising_order(prior: ComponentSpec, spec: ParameterSpec) -> ComponentSpec:
+    """Sort the weights of an ordinal parameter, written in the order of its values, as the values are sorted."""
+    weights = list(prior.options.get("weights", ()))
+    if len(weights) != len(spec.values):
+        return prior
+    order = sorted(range(len(weights)), key=lambda i: float(spec.values[i]))
+    return replace(prior, options={"weights": [weights[i] for i in order]})
+
+
+def _joint_factor(
+    spec: ComponentSpec, space: SearchSpace, owners: dict[str, str]
+) -> tuple[tuple[int, ...], JointDensity]:
+    prior = build_member(JOINT_PRIORS, spec, "joint prior")
+    for name in prior.names:
+        if name not in space.names:
+            hint = nearest(name, space.names)
+            problem = f"it names '{name}', which is no parameter"
+            raise ScenarioError(spec.path, problem, allowed=", ".join(space.names), hint=hint)
+        if name in owners:
+            problem = f"'{name}' has a prior already, at {owners[name]}"
+            raise ScenarioError(spec.path, problem, allowed="one prior per parameter", hint="Drop one of the two.")
+        owners[name] = spec.path
+    axes = tuple(space.names.index(name) for name in prior.names)
+    try:
+        return axes, prior.on([space.parameters[j] for j in axes])
+    except ScenarioError as error:
+        raise error.below(spec.path) from None
+
+
+def build_history(scenario: Scenario) -> History:
+    """Make the empty history of a run."""
+    return History(build_space(scenario), scenario.objectives)
+
+
+def build_optimizer(scenario: Scenario, history: History | None = None) -> Optimizer:
+    """Make the optimizer, which goes on from the given history."""
+    history = build_history(scenario) if history is None else history
+    space = history.space
+    prior = build_prior(scenario, space)
+    initial = InitialPhase(space, prior, build_design(scenario), scenario.design.number_of_samples, scenario.seed)
+    if scenario.optimizer.type == "bayesian":
+        return BayesianOptimizer(
+            history,
+            prior=prior,
+            initial=initial,
+            method=build_method(scenario),
+            budget=scenario.budget.evaluations,
+            seed=scenario.seed,
+        )
+    if scenario.optimizer.type in SAMPLING_PHASES:
+        sampling = SAMPLING_PHASES[scenario.optimizer.type]
+        return SamplingOptimizer(history, prior=prior, initial=initial, sampling=sampling, seed=scenario.seed)
+    path, known = f"{scenario.optimizer.path}.type", ", ".join(OPTIMIZERS)
+    hint = nearest(scenario.optimizer.type, OPTIMIZERS)
+    raise ScenarioError(path, f"unknown optimizer {scenario.optimizer.type!r}", allowed=known, hint=hint)
+
+
+def build_design(scenario: Scenario) -> InitialDesign:
+    """Make the initial design; ``auto`` draws from the priors where there are any, else from a Sobol sequence."""
+    name = scenario.design.type
+    if name == "auto":
+        has_prior = scenario.joint_priors or any(p.prior is not None for p in scenario.parameters)
+        name = "prior_sampling" if has_prior else "sobol"
+    return build_member(DESIGNS, ComponentSpec(type=name, path="$.design_of_experiment"), "design")
+
+
+def build_method(scenario: Scenario) -> Method:
+    """Make the parts of Bayesian optimization."""
+    acquisition = scenario.acquisition
+    weighting = acquisition.prior_weighting
+    return Method(
+        surrogate=build_member(SURROGATES, scenario.surrogate, "surrogate"),
+        acquisition=build_member(ACQUISITIONS, acquisition.function, "acquisition function"),
+        scalarization=build_member(SCALARIZATIONS, acquisition.scalarization, "scalarization"),
+        weights=_build_weights(scenario),
+        prior_weighting=None if weighting is None else build_member(PRIOR_WEIGHTINGS, weighting, "prior weighting"),
+        maximizer=build_member(MAXIMIZERS, scenario.maximizer, "maximizer"),
+        fallback=PriorSampling(),
+    )
+
+
+def _build_weights(scenario: Scenario) -> WeightSampling:
+    spec = scenario.acquisition.weights
+    weights = build_member(WEIGHTS, spec, "weight sampling")
+    if isinstance(weights, BoundingBox):
+        try:
+            weights.check(scenario.objectives)
+        except ScenarioError as error:
+            raise error.below(spec.path) from None
+    return weights
+
+
+def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = None) -> Evaluator:
+    """Make the black box: the scenario's own, or a Python function given instead.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario names none and none is given, or it cannot be imported or found.
+    """
+    names = tuple(objective.name for objective in scenario.objectives)
+    if function is not None:
+        return PythonFunction(function=function, objectives=names)
+    spec = scenario.evaluator.component
+    if spec is None:
+        raise ScenarioError(
+            "$.evaluator.type",
+            "the scenario names no evaluator",
+            allowed=", ".join(EVALUATORS),
+            hint="Name one, or pass a function to hypermap_lite.optimize.",
+        )
+    return build_member(EVALUATORS, spec, "evaluator", objectives=names, **_surroundings(spec, scenario))
+
+
+def _surroundings(spec: ComponentSpec, scenario: Scenario) -> dict[str, Any]:
+    if spec.type == "command":
+        return {"parameters": tuple(p.name for p in scenario.parameters), "working_directory": scenario.directory}
+    return {"search_path": (str(scenario.directory.resolve()), str(Path.cwd()))}
+
+
+def validate(scenario: Scenario) -> None:
+    """Build everything once, so that every mistake shows before the first evaluation.
+
+    Raises
+    ------
+    ScenarioError
+        For the first mistake found.
+    """
+    build_optimizer(scenario)
+    if scenario.evaluator.component is not None:
+        build_evaluator(scenario)

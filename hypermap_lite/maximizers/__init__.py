@@ -1,0 +1,16 @@
+"""Maximizers: the search for the point with the best acquisition value."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from hypermap_lite.maximizers.base import MaximizationProblem, Maximizer, Maximum
+from hypermap_lite.maximizers.local_search import LocalSearch
+from hypermap_lite.maximizers.multistart_gradient import MultistartGradient
+
+MAXIMIZERS: Final[Mapping[str, type[Maximizer]]] = {
+    "multistart_gradient": MultistartGradient,
+    "local_search": LocalSearch,
+}
+"""JSON name of each maximizer."""
+
+__all__ = ["MAXIMIZERS", "LocalSearch", "MaximizationProblem", "Maximizer", "Maximum", "MultistartGradient"]

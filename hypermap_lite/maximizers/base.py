@@ -1,0 +1,123 @@
+"""What a maximizer is: the search for the point with the best score."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from hypermap_lite.acquisition.base import Scorer
+from hypermap_lite.design.base import ENUMERATION_LIMIT
+from hypermap_lite.design.sobol import sobol_points
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.priors.product import ProductPrior
+from hypermap_lite.space.search_space import SearchSpace
+from hypermap_lite.typing import FloatArray, Rng
+
+PERTURBATIONS = 24
+"""Perturbed copies of each incumbent among the candidates."""
+
+PERTURBATION_SCALES = (0.2, 0.05, 0.01)
+"""Standard deviations of the perturbations, in units of the cube, used in turn."""
+
+PRIOR_SHARE = 4
+"""One prior draw per so many Sobol candidates, where there is a prior."""
+
+SEPARATION = 0.05
+"""Starts are at least this far apart, in the largest coordinate difference."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MaximizationProblem:
+    """Where to look for the best score."""
+
+    scorer: Scorer
+    space: SearchSpace
+    prior: ProductPrior
+    incumbents: FloatArray
+    """Points worth refining, shape (k, d), best first."""
+
+    seen: Collection[bytes]
+    """Keys of points that must not be chosen again."""
+
+    rng: Rng
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Maximum:
+    """The best new point found."""
+
+    x: FloatArray
+    """Shape (d,)."""
+
+    score: float
+
+
+class Maximizer(Protocol):
+    """Options of the search."""
+
+    def maximize(self, problem: MaximizationProblem) -> Maximum | None:
+        """Return the best legal point that has not been seen; None if the space holds no other."""
+        ...
+
+
+def check_options(candidates: int, starts: int) -> None:
+    """Raise a `ScenarioError` if the search would have nothing to do."""
+    if candidates < 1:
+        raise ScenarioError("$.candidates", f"there are {candidates} candidates", allowed="an integer >= 1")
+    if starts < 1:
+        raise ScenarioError("$.starts", f"there are {starts} starts", allowed="an integer >= 1")
+
+
+def draw_candidates(problem: MaximizationProblem, n: int) -> FloatArray:
+    """Return new legal points: Sobol, draws from the prior, and perturbed incumbents; all points of a small space.
+
+    Returns
+    -------
+    FloatArray
+        Shape (k, d); empty if every configuration has been seen.
+    """
+    space, rng = problem.space, problem.rng
+    if space.n_configurations <= n:
+        X = space.enumerate()
+    else:
+        parts = [sobol_points(n, space.dimension, rng)]
+        if not problem.prior.is_uniform:
+            parts.append(problem.prior.sample(max(n // PRIOR_SHARE, 1), rng))
+        parts.append(perturb(problem.incumbents, rng))
+        X = space.snap(np.vstack(parts))
+    X = X[space.unseen(X, problem.seen)]
+    if not len(X) and space.n_configurations <= ENUMERATION_LIMIT:
+        X = space.enumerate()
+        X = X[space.unseen(X, problem.seen)]
+    return X
+
+
+def perturb(points: FloatArray, rng: Rng) -> FloatArray:
+    """Return Gaussian perturbations of k points, of all coordinates or a random half, shape (k * PERTURBATIONS, d)."""
+    X = np.repeat(points, PERTURBATIONS, axis=0)
+    scales = np.resize(PERTURBATION_SCALES, len(X))[:, None]
+    moved = rng.random(X.shape) < rng.choice([0.5, 1.0], size=(len(X), 1))
+    return np.clip(X + scales * moved * rng.standard_normal(X.shape), 0.0, 1.0)
+
+
+def choose_starts(X: FloatArray, scores: FloatArray, n: int) -> FloatArray:
+    """Return the n best points that are apart from each other, shape (<= n, d), best first."""
+    chosen: list[int] = []
+    for i in np.argsort(-scores, kind="stable"):
+        if all(np.abs(X[i] - X[j]).max() >= SEPARATION for j in chosen):
+            chosen.append(int(i))
+        if len(chosen) == n:
+            break
+    return X[chosen]
+
+
+def best_unseen(problem: MaximizationProblem, X: FloatArray, scores: FloatArray) -> Maximum | None:
+    """Return the best of n points that has not been seen, or None."""
+    new = problem.space.unseen(X, problem.seen)
+    if not new.any():
+        return None
+    i = int(np.flatnonzero(new)[np.argmax(scores[new])])
+    return Maximum(x=X[i], score=float(scores[i]))

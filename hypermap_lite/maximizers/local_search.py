@@ -1,0 +1,44 @@
+"""Local search without gradients."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hypermap_lite.maximizers.base import (
+    MaximizationProblem,
+    Maximum,
+    best_unseen,
+    check_options,
+    choose_starts,
+    draw_candidates,
+)
+from hypermap_lite.maximizers.neighbours import climb
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LocalSearch:
+    """The best of many candidates, refined by one-exchange steps along every axis in both directions."""
+
+    candidates: int = 1024
+    """Sobol candidates; draws from the prior and perturbed incumbents come on top."""
+
+    starts: int = 4
+    """Candidates that are refined."""
+
+    def __post_init__(self) -> None:
+        check_options(self.candidates, self.starts)
+
+    def maximize(self, problem: MaximizationProblem) -> Maximum | None:
+        """Return the best new point found; None if the space holds no other."""
+        X = draw_candidates(problem, self.candidates)
+        if not len(X):
+            return None
+        scores = problem.scorer(X)
+        if problem.space.n_configurations <= self.candidates:
+            return best_unseen(problem, X, scores)
+        axes = np.ones(problem.space.dimension, dtype=bool)
+        refined = [climb(problem.space, problem.scorer, x, axes) for x in choose_starts(X, scores, self.starts)]
+        points = np.vstack([*[x for x, _ in refined], X])
+        return best_unseen(problem, problem.space.snap(points), np.concatenate([[s for _, s in refined], scores]))

@@ -1,0 +1,88 @@
+"""Gradient ascent from several starts at once, alternating with one-exchange steps on discrete axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hypermap_lite.maximizers.base import (
+    MaximizationProblem,
+    Maximum,
+    best_unseen,
+    check_options,
+    choose_starts,
+    draw_candidates,
+)
+from hypermap_lite.maximizers.local_search import LocalSearch
+from hypermap_lite.maximizers.neighbours import climb
+from hypermap_lite.typing import FloatArray
+
+MAX_ITERATIONS = 50
+"""Of L-BFGS-B, for all starts together."""
+
+ROUNDS = 3
+"""Alternations between real and discrete axes."""
+
+WORST = -1e10
+"""Stands for scores that are not finite."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MultistartGradient:
+    """The best of many candidates, refined by L-BFGS-B on the real axes and one-exchange steps on the others.
+
+    All starts are one problem, the sum of their scores, so that each step evaluates them together. A score without
+    gradient is left to `LocalSearch`.
+    """
+
+    candidates: int = 1024
+    """Sobol candidates; draws from the prior and perturbed incumbents come on top."""
+
+    starts: int = 4
+    """Candidates that are refined."""
+
+    def __post_init__(self) -> None:
+        check_options(self.candidates, self.starts)
+
+    def maximize(self, problem: MaximizationProblem) -> Maximum | None:
+        """Return the best new point found; None if the space holds no other."""
+        is_real = problem.space.is_continuous
+        if not problem.scorer.is_differentiable or not is_real.any():
+            return LocalSearch(candidates=self.candidates, starts=self.starts).maximize(problem)
+        X = draw_candidates(problem, self.candidates)
+        scores = problem.scorer(X)
+        refined = choose_starts(X, scores, self.starts)
+        for _ in range(1 if is_real.all() else ROUNDS):
+            before = refined
+            refined = self._ascend(problem, refined)
+            if not is_real.all():
+                refined = np.array([climb(problem.space, problem.scorer, x, ~is_real)[0] for x in refined])
+            if np.array_equal(before, refined):
+                break
+        points = np.vstack([refined, X])
+        return best_unseen(problem, points, np.concatenate([problem.scorer(refined), scores]))
+
+    def _ascend(self, problem: MaximizationProblem, starts: FloatArray) -> FloatArray:
+        """Improve k starts along the real axes, shape (k, d)."""
+        from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
+
+        is_real = problem.space.is_continuous
+
+        def negative(flat: FloatArray) -> tuple[float, FloatArray]:
+            X = starts.copy()
+            X[:, is_real] = flat.reshape(len(starts), -1)
+            score, gradient = problem.scorer.with_gradient(X)
+            usable = np.isfinite(score) & np.isfinite(gradient).all(axis=1)
+            score, gradient = np.where(usable, score, WORST), np.where(usable[:, None], gradient, 0.0)
+            return -float(score.sum()), -gradient[:, is_real].ravel()
+
+        start = starts[:, is_real].ravel()
+        bounds = [(0.0, 1.0)] * len(start)
+        result = minimize(
+            negative, start, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": MAX_ITERATIONS}
+        )
+        moved = starts.copy()
+        moved[:, is_real] = np.clip(result.x, 0.0, 1.0).reshape(len(starts), -1)
+        better = problem.scorer(moved) > problem.scorer(starts)
+        return np.where(better[:, None], moved, starts)

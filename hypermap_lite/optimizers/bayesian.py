@@ -1,0 +1,191 @@
+"""Bayesian optimization: model the objectives, maximize the acquisition function, repeat."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
+from hypermap_lite.acquisition.prior_weighted import PriorWeighted, PriorWeighting
+from hypermap_lite.design.base import InitialDesign
+from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.history.history import History
+from hypermap_lite.maximizers.base import MaximizationProblem, Maximizer
+from hypermap_lite.optimizers.base import Optimizer
+from hypermap_lite.optimizers.initial import InitialPhase
+from hypermap_lite.optimizers.streams import Stream, generator
+from hypermap_lite.priors.product import ProductPrior
+from hypermap_lite.scalarization.base import Normalization, Scalarization, WeightSampling
+from hypermap_lite.surrogates.base import Posterior, Surrogate
+from hypermap_lite.typing import FloatArray, Rng
+
+MIN_COMPLETED = 2
+"""With fewer completed evaluations there is nothing to model."""
+
+MAX_INCUMBENTS = 8
+"""Best points whose surroundings are searched."""
+
+FIRST_MILESTONE = 8
+MILESTONE_GROWTH = 1.5
+"""Hyperparameters are fitted on the first 8, 12, 18, ... evaluations, each fit starting from the last.
+
+The warm start of any fit is that of the milestone below, never that of the last call, so it is a function of the
+history and a resumed run fits as the uninterrupted one did.
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Method:
+    """The replaceable parts of Bayesian optimization."""
+
+    surrogate: Surrogate
+    acquisition: Acquisition
+    scalarization: Scalarization
+    weights: WeightSampling
+    prior_weighting: PriorWeighting | None
+    """None leaves the prior out of the acquisition."""
+
+    maximizer: Maximizer
+    fallback: InitialDesign
+    """Draws a point where there is nothing to model yet."""
+
+
+class BayesianOptimizer(Optimizer):
+    """Suggests the maximum of an acquisition function over a model of the completed evaluations.
+
+    Parameters
+    ----------
+    history
+        Completed trials so far; grows by `tell`.
+    prior
+        The user's belief over the optimum.
+    initial
+        The trials before there is a model.
+    method
+        The parts.
+    budget
+        Configurations of the whole run; sets the default strength of the prior.
+    seed
+        Of the scenario.
+    """
+
+    def __init__(
+        self,
+        history: History,
+        *,
+        prior: ProductPrior,
+        initial: InitialPhase,
+        method: Method,
+        budget: int,
+        seed: int,
+    ) -> None:
+        super().__init__(history)
+        self._prior = prior
+        self._initial = initial
+        self._method = method
+        self._budget = budget
+        self._seed = seed
+        self._warm_starts: dict[int, Any] = {}
+        self._posterior_of: tuple[int, Posterior] | None = None
+
+    def _suggest(self, trial: int) -> Suggestion | None:
+        if trial < len(self._initial):
+            return self._initial.suggestion(trial)
+        rng = generator(self._seed, Stream.SUGGESTION, trial)
+        if len(self.history.completed) < MIN_COMPLETED:
+            return self._without_model(trial, rng)
+        return self._with_model(trial, rng)
+
+    def _without_model(self, trial: int, rng: Rng) -> Suggestion | None:
+        space, taken = self.history.space, self.taken_keys()
+        X = self._method.fallback.points(space, self._prior, len(taken) + 1, rng)
+        new = X[space.unseen(X, taken)]
+        if not len(new):
+            return None
+        return Suggestion(trial=trial, configuration=space.decode(new[:1])[0], phase="random")
+
+    def _with_model(self, trial: int, rng: Rng) -> Suggestion | None:
+        space = self.history.space
+        context = self._context(rng)
+        scorer: Scorer = self._method.acquisition.scorer(context)
+        weight = self._prior_weight(trial)
+        if weight is not None and self._method.prior_weighting is not None:
+            floor = self._method.prior_weighting.floor
+            scorer = PriorWeighted(inner=scorer, prior=self._prior, weight=weight, floor=floor)
+        best = self._method.maximizer.maximize(
+            MaximizationProblem(
+                scorer=scorer,
+                space=space,
+                prior=self._prior,
+                incumbents=self._incumbents(context),
+                seen=self.taken_keys(),
+                rng=rng,
+            )
+        )
+        if best is None:
+            return None
+        configuration = space.decode(best.x[None])[0]
+        return Suggestion(
+            trial=trial,
+            configuration=configuration,
+            phase="model",
+            prior_weight=weight,
+            acquisition_value=best.score,
+        )
+
+    def _context(self, rng: Rng) -> AcquisitionContext:
+        X, Y = self.history.X(), self.history.Y()
+        normalization = Normalization.of_front(Y)
+        return AcquisitionContext(
+            posterior=self._posterior(X, Y),
+            X=X,
+            Y=Y,
+            X_pending=self.history.space.encode([s.configuration for s in self.pending]),
+            scalarization=self._method.scalarization,
+            weights=self._method.weights.sample(self.history.objectives, normalization, rng),
+            normalization=normalization,
+            rng=rng,
+        )
+
+    def _prior_weight(self, trial: int) -> float | None:
+        """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
+        if self._method.prior_weighting is None or self._prior.is_uniform:
+            return None
+        n = trial - len(self._initial) + 1
+        return self._method.prior_weighting.weight(n, max(self._budget - len(self._initial), 1))
+
+    def _incumbents(self, context: AcquisitionContext) -> FloatArray:
+        """Return the observed points of best predicted scalarization, shape (k, d), best first."""
+        mean = context.posterior.predict(context.X).mean
+        scalars = context.scalarization(context.normalization(mean), context.weights)
+        return context.X[np.argsort(scalars, kind="stable")[:MAX_INCUMBENTS]]
+
+    def _posterior(self, X: FloatArray, Y: FloatArray) -> Posterior:
+        """Return the posterior given all completed evaluations; the same object until there are more."""
+        if self._posterior_of is None or self._posterior_of[0] != len(X):
+            self._posterior_of = (len(X), self._fit(X, Y))
+        return self._posterior_of[1]
+
+    def _fit(self, X: FloatArray, Y: FloatArray) -> Posterior:
+        start = None
+        for k in milestones(len(X)) if self._method.surrogate.starts_warm else ():
+            if k not in self._warm_starts:
+                self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start).hyperparameters
+            start = self._warm_starts[k]
+        return self._fit_from(X, Y, start)
+
+    def _fit_from(self, X: FloatArray, Y: FloatArray, start: Any) -> Posterior:
+        rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
+        is_ordered = self.history.space.is_ordered
+        return self._method.surrogate.fit(X, Y, is_ordered=is_ordered, rng=rng, start=start)
+
+
+def milestones(n: int) -> Iterator[int]:
+    """Yield the numbers of evaluations below n whose fits start the later ones."""
+    k = float(FIRST_MILESTONE)
+    while k < n:
+        yield int(k)
+        k *= MILESTONE_GROWTH

@@ -1,0 +1,64 @@
+"""What a scalarization is: several objectives turned into one number, smaller is better."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from hypermap_lite.objectives import Objective
+from hypermap_lite.pareto.dominance import non_dominated
+from hypermap_lite.typing import FloatArray, Rng
+
+
+class Scalarization(Protocol):
+    """A monotone function of m normalized objectives, all to be minimized."""
+
+    is_linear: ClassVar[bool]
+    """Whether the expected improvement may be taken per objective and summed."""
+
+    def __call__(self, Y: FloatArray, weights: FloatArray) -> FloatArray:
+        """Return the scalar of each row, shape (..., m) to (...)."""
+        ...
+
+    def gradient(self, Y: FloatArray, weights: FloatArray) -> FloatArray:
+        """Return a (sub)gradient by Y, shape (..., m)."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Normalization:
+    """Shift and scale that bring the objectives, to be minimized, to comparable sizes."""
+
+    offset: FloatArray
+    """Shape (m,): the value that becomes 0, the best of the front."""
+
+    scale: FloatArray
+    """Shape (m,): the length that becomes 1, the range of the front."""
+
+    @classmethod
+    def of_front(cls, Y: FloatArray) -> Normalization:
+        """Take the best and the worst values of the non-dominated rows of Y, shape (n, m).
+
+        Where the front has no extent in an objective, all rows are taken; where those have none, scale 1.
+        """
+        front = Y[non_dominated(Y)]
+        offset = front.min(axis=0)
+        scale = front.max(axis=0) - offset
+        overall = Y.max(axis=0) - Y.min(axis=0)
+        scale = np.where(scale > 1e-12 * overall, scale, overall)
+        return cls(offset=offset, scale=np.where(scale > 0, scale, 1.0))
+
+    def __call__(self, Y: FloatArray) -> FloatArray:
+        """Return normalized objectives, shape (..., m)."""
+        return (Y - self.offset) / self.scale
+
+
+class WeightSampling(Protocol):
+    """Draws the weights of a scalarization: which trade-off is looked for next."""
+
+    def sample(self, objectives: Sequence[Objective], normalization: Normalization, rng: Rng) -> FloatArray:
+        """Return m weights >= 0 that sum to one, shape (m,)."""
+        ...
