@@ -1,0 +1,64 @@
+"""Every error that `robot_tasks` raises on purpose."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class RobotTasksError(Exception):
+    """Base class of all errors of this package."""
+
+
+class UnknownNameError(RobotTasksError, LookupError):
+    """Something was asked for by a name that does not exist.
+
+    Parameters
+    ----------
+    kind
+        What was looked up, for instance ``"site"`` or ``"task"``.
+    name
+        The name asked for.
+    available
+        The names that exist.
+    """
+
+    def __init__(self, kind: str, name: str, available: Iterable[str]) -> None:
+        known = sorted(available)
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f" Did you mean '{close[0]}'?" if close else ""
+        super().__init__(f"unknown {kind} '{name}'. Known: {', '.join(known)}.{hint}")
+
+
+class ParameterError(RobotTasksError, ValueError):
+    """A configuration does not fit the parameters of a task.
+
+    Parameters
+    ----------
+    task
+        Name of the task.
+    parameter
+        Name of the parameter.
+    problem
+        What is wrong and what was given.
+    allowed
+        What is allowed, as the end of a sentence.
+    """
+
+    def __init__(self, task: str, parameter: str, problem: str, allowed: str) -> None:
+        super().__init__(f"task '{task}', parameter '{parameter}': {problem}. Give {allowed}.")
+
+
+class SimulationError(RobotTasksError, RuntimeError):
+    """The physics left the range in which its numbers mean anything.
+
+    Parameters
+    ----------
+    time
+        Simulated time in [s].
+    problem
+        The simulator's own words.
+    """
+
+    def __init__(self, time: float, problem: str) -> None:
+        super().__init__(f"simulation at t = {time:.3f} s: {problem}. Report the configuration and the seed as a bug.")
