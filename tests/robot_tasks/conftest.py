@@ -1,0 +1,43 @@
+"""Fixtures of the robot tests: one simulation for all, hand-made episodes, good and bad parameters."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from robot_tasks.episode import Episode
+from robot_tasks.simulation import Simulation
+
+OPERATOR_MEANS = {
+    "mp1_position_y": 0.7,
+    "mp1_position_z": 1.1,
+    "mp2_position_y": 0.0,
+    "mp2_position_z": 1.0,
+    "mp2_threshold": 0.95,
+    "mp3_threshold": 0.05,
+}
+STRAIGHT_THROUGH_THE_ENGINE = OPERATOR_MEANS | {"mp3_threshold": 1.5}
+PRESSED_ON_THE_TABLE = OPERATOR_MEANS | {"mp1_position_z": 0.5, "mp3_threshold": -0.5}
+
+
+@pytest.fixture(scope="session")
+def simulation() -> Simulation:
+    return Simulation.from_scene("obstacle_avoidance.xml")
+
+
+@pytest.fixture
+def make_episode() -> Callable[..., Episode]:
+    def make(tip_positions, *, success_time=None, **fields) -> Episode:
+        tips = np.asarray(tip_positions, dtype=float)
+        n = len(tips)
+        return Episode(
+            times=np.arange(n) * 0.1,
+            tip_positions=tips,
+            reference_positions=tips,
+            joint_positions=np.zeros((n, 7)),
+            success_time=success_time,
+            simulated_seconds=(n - 1) * 0.1,
+            **fields,
+        )
+
+    return make
