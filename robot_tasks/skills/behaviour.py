@@ -1,0 +1,67 @@
+"""The life of a behaviour: started when first ticked, updated while it runs, ended once."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import Enum
+
+from robot_tasks.geometry import Pose, Vector
+
+
+class Status(Enum):
+    """What a behaviour last answered."""
+
+    IDLE = "idle"
+    """Never ticked, or preempted."""
+    RUNNING = "running"
+    SUCCESS = "success"
+    FAILURE = "failure"
+
+
+@dataclass(slots=True, kw_only=True)
+class SkillContext:
+    """What behaviours read from the robot and what they ask of it."""
+
+    tip: Vector
+    """Measured position of the tool tip in world axes, in [m]."""
+    goal: Pose
+    """Pose to move to. It stays until a behaviour sets another."""
+
+
+class Behaviour(ABC):
+    """A node of a behaviour tree.
+
+    Subclasses answer in `_update`; `_initialise` runs before the first update of each run and `_terminate` after the
+    last, with SUCCESS, FAILURE or, if another branch took over, IDLE.
+    """
+
+    __slots__ = ("status",)
+
+    def __init__(self) -> None:
+        self.status = Status.IDLE
+
+    def tick(self, context: SkillContext) -> Status:
+        """Advance by one tick, starting the behaviour if it is not running."""
+        if self.status is not Status.RUNNING:
+            self._initialise(context)
+        self.status = status = self._update(context)
+        if status is not Status.RUNNING:
+            self._terminate(context, status)
+        return status
+
+    def halt(self, context: SkillContext) -> None:
+        """Preempt the behaviour if it is running."""
+        if self.status is Status.RUNNING:
+            self.status = Status.IDLE
+            self._terminate(context, Status.IDLE)
+
+    def _initialise(self, context: SkillContext) -> None:  # noqa: B027 - an optional hook
+        """Prepare a run."""
+
+    @abstractmethod
+    def _update(self, context: SkillContext) -> Status:
+        """Do one tick's work and answer RUNNING, SUCCESS or FAILURE."""
+
+    def _terminate(self, context: SkillContext, status: Status) -> None:  # noqa: B027 - an optional hook
+        """Clean up after a run that ended with `status`."""

@@ -1,0 +1,145 @@
+"""Inner nodes of a behaviour tree, with the semantics of SkiROS2's processors.
+
+Children are ticked in order. The plain kinds decide afresh at every tick and restart children that had finished; the
+starred kinds remember, for one run, which children are done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from robot_tasks.skills.behaviour import Behaviour, SkillContext, Status
+
+
+class Composite(Behaviour):
+    """A node with children, all of which are halted when it ends.
+
+    Parameters
+    ----------
+    children
+        At least one behaviour, in the order in which they are ticked.
+    """
+
+    __slots__ = ("children",)
+
+    def __init__(self, *children: Behaviour) -> None:
+        super().__init__()
+        if not children:
+            raise ValueError(f"{type(self).__name__} needs at least one child, got none")
+        self.children = children
+
+    def _terminate(self, context: SkillContext, status: Status) -> None:
+        _halt(self.children, context)
+
+
+class Serial(Composite):
+    """Succeed once all children succeed in one tick; the first that does not, decides, and later ones are halted."""
+
+    __slots__ = ()
+
+    def _update(self, context: SkillContext) -> Status:
+        for position, child in enumerate(self.children, start=1):
+            status = child.tick(context)
+            if status is not Status.SUCCESS:
+                _halt(self.children[position:], context)
+                return status
+        return Status.SUCCESS
+
+
+class SerialStar(Composite):
+    """Tick children one after the other, each until it succeeds; a failure ends the sequence."""
+
+    __slots__ = ("_current",)
+
+    def _initialise(self, context: SkillContext) -> None:
+        self._current = 0
+
+    def _update(self, context: SkillContext) -> Status:
+        while self._current < len(self.children):
+            status = self.children[self._current].tick(context)
+            if status is not Status.SUCCESS:
+                return status
+            self._current += 1
+        return Status.SUCCESS
+
+
+class Selector(Composite):
+    """Follow the first child that runs or succeeds and halt later ones; fail if every child fails."""
+
+    __slots__ = ()
+
+    def _update(self, context: SkillContext) -> Status:
+        for position, child in enumerate(self.children, start=1):
+            status = child.tick(context)
+            if status is not Status.FAILURE:
+                _halt(self.children[position:], context)
+                return status
+        return Status.FAILURE
+
+
+class SelectorStar(Composite):
+    """Try children one after the other, each until it fails; a success ends the search."""
+
+    __slots__ = ("_current",)
+
+    def _initialise(self, context: SkillContext) -> None:
+        self._current = 0
+
+    def _update(self, context: SkillContext) -> Status:
+        while self._current < len(self.children):
+            status = self.children[self._current].tick(context)
+            if status is not Status.FAILURE:
+                return status
+            self._current += 1
+        return Status.FAILURE
+
+
+class ParallelFs(Composite):
+    """Run all children; the first to finish, by success or failure, decides, and those after it are not ticked."""
+
+    __slots__ = ()
+
+    def _update(self, context: SkillContext) -> Status:
+        for child in self.children:
+            status = child.tick(context)
+            if status is not Status.RUNNING:
+                return status
+        return Status.RUNNING
+
+
+class ParallelFf(Composite):
+    """Run all children until each has succeeded once; the first failure stops all."""
+
+    __slots__ = ("_waiting",)
+
+    def _initialise(self, context: SkillContext) -> None:
+        self._waiting = list(self.children)
+
+    def _update(self, context: SkillContext) -> Status:
+        still_running = []
+        for child in self._waiting:
+            status = child.tick(context)
+            if status is Status.FAILURE:
+                return status
+            if status is Status.RUNNING:
+                still_running.append(child)
+        self._waiting = still_running
+        return Status.RUNNING if still_running else Status.SUCCESS
+
+
+class NoFail(Composite):
+    """Turn the failure of a child into success."""
+
+    __slots__ = ()
+
+    def __init__(self, child: Behaviour) -> None:
+        super().__init__(child)
+
+    def _update(self, context: SkillContext) -> Status:
+        status = self.children[0].tick(context)
+        return Status.SUCCESS if status is Status.FAILURE else status
+
+
+def _halt(children: Sequence[Behaviour], context: SkillContext) -> None:
+    for child in children:
+        child.halt(context)
