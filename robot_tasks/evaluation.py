@@ -1,0 +1,108 @@
+"""From a configuration and a seed to numbers: the only link to an optimizer."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from robot_tasks.episode import Episode
+from robot_tasks.errors import UnknownNameError
+from robot_tasks.rollout import rollout
+from robot_tasks.simulation import Simulation
+from robot_tasks.tasks import TASKS, Task
+
+
+class _WarmSimulations(threading.local):
+    """One simulation per task, thread and process: loading costs as much as half a second of simulated time."""
+
+    def __init__(self) -> None:
+        self._by_scene: dict[str, Simulation] = {}
+
+    def get(self, scene: str) -> Simulation:
+        if scene not in self._by_scene:
+            self._by_scene[scene] = Simulation.from_scene(scene)
+        return self._by_scene[scene]
+
+
+_SIMULATIONS: Final = _WarmSimulations()
+
+
+def find_task(name: str) -> Task:
+    """Look up a task by name.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such task.
+    """
+    if name not in TASKS:
+        raise UnknownNameError("task", name, TASKS)
+    return TASKS[name]
+
+
+def evaluate(task_name: str, configuration: Mapping[str, float], seed: int = 0) -> dict[str, float]:
+    """Run one rollout and measure it.
+
+    Equal arguments give bit-identical results on one machine, whatever ran before.
+
+    Parameters
+    ----------
+    task_name
+        Name of a task.
+    configuration
+        Value of every parameter of the task.
+    seed
+        Chooses start state and offsets of bodies. The same seed means the same circumstances for every configuration.
+
+    Returns
+    -------
+    dict
+        Objectives (to be maximized) first, then every reward term, then what `summarize` reports.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such task.
+    ParameterError
+        If the configuration does not fit the task.
+    """
+    task = find_task(task_name)
+    parameters = task.check(configuration)
+    variation = task.randomization.sample(np.random.default_rng(seed))
+    return measure(task, rollout(task, parameters, variation, _SIMULATIONS.get(task.scene)))
+
+
+def measure(task: Task, episode: Episode) -> dict[str, float]:
+    """Compute objectives, reward terms and summary of an episode."""
+    terms = {term.name: term.total(episode) for term in task.terms}
+    objectives = {name: sum(terms[term.name] for term in members) for name, members in task.objectives.items()}
+    return objectives | terms | summarize(episode)
+
+
+def summarize(episode: Episode) -> dict[str, float]:
+    """Reduce an episode to numbers that are worth a column but are no objectives.
+
+    Returns
+    -------
+    dict
+        ``success``: 1 if the skill ever succeeded, else 0. ``time_to_success`` in [s]: the length of the episode if it
+        never did. ``touches``: contacts of arm or tool with untouchable things, at least 0.1 s apart.
+        ``contact_seconds``: their total time in [s]. ``peak_contact_force``: largest normal force among them in [N].
+        ``deepest_penetration``: their largest overlap in [m]. ``clearance``: smallest distance of arm or tool to the
+        obstacle in [m], at most 0.5, sampled every 0.1 s. ``simulated_seconds``: time after which nothing moved in [s].
+    """
+    contact = episode.contact
+    duration = float(episode.times[-1])
+    return {
+        "success": float(episode.is_success),
+        "time_to_success": duration if episode.success_time is None else episode.success_time,
+        "touches": float(contact.touches),
+        "contact_seconds": contact.seconds,
+        "peak_contact_force": contact.peak_force,
+        "deepest_penetration": contact.deepest_penetration,
+        "clearance": episode.clearance,
+        "simulated_seconds": episode.simulated_seconds,
+    }

@@ -1,0 +1,14 @@
+"""Tasks: a scene, a skill with parameters to tune, and objectives.
+
+Adding one: a file with a `Task`, its scene in `models`, a line in the table below, from which tests pick it up.
+"""
+
+from collections.abc import Mapping
+from typing import Final
+
+from robot_tasks.tasks.base import Parameter, Task
+from robot_tasks.tasks.obstacle_avoidance import OBSTACLE_AVOIDANCE
+
+TASKS: Final[Mapping[str, Task]] = {task.name: task for task in (OBSTACLE_AVOIDANCE,)}
+
+__all__ = ["TASKS", "Parameter", "Task"]

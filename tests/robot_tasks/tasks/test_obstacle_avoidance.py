@@ -1,0 +1,85 @@
+"""Tests for obstacle_avoidance.py: magnitudes of its objectives and how good and bad parameters fare."""
+
+import numpy as np
+import pytest
+
+from robot_tasks.evaluation import measure
+from robot_tasks.rollout import rollout
+from robot_tasks.tasks.obstacle_avoidance import ENGINE, GOAL, OBSTACLE_AVOIDANCE, STARTS, TABLE
+from tests.robot_tasks.conftest import OPERATOR_MEANS, PRESSED_ON_THE_TABLE, STRAIGHT_THROUGH_THE_ENGINE
+
+TASK = OBSTACLE_AVOIDANCE
+
+
+def run(simulation, parameters, start="s0"):
+    return rollout(TASK, parameters, TASK.randomization.nominal(start), simulation)
+
+
+def test_an_episode_spent_at_the_goal_has_the_published_value(make_episode):
+    numbers = measure(TASK, make_episode([GOAL] * 121, success_time=0.0))
+    assert numbers["success_bonus"] == 960.0
+    assert numbers["goal_distance"] == pytest.approx(120 * 22.89, abs=0.5)
+    assert numbers["performance"] == pytest.approx(960.0 + 120 * 22.89, abs=0.5)
+    assert numbers["table_avoidance"] == pytest.approx(120 * -1.268, abs=0.05)
+
+
+def test_an_episode_spent_inside_the_engine_has_the_published_charge(make_episode):
+    numbers = measure(TASK, make_episode([(-0.5, 0.3, 0.7)] * 121))
+    assert numbers["engine_avoidance"] == pytest.approx(120 * -238.1, abs=5.0)
+    assert numbers["safety"] == numbers["engine_avoidance"] + numbers["table_avoidance"]
+
+
+def test_the_reward_boxes_are_those_of_the_scene(simulation):
+    simulation.reset()
+    simulation.place_arm(STARTS["s0"])
+    for name, box in (("engine", ENGINE), ("table", TABLE)):
+        geom = simulation.id_of("geom", name)
+        top = simulation.data.geom_xpos[geom, 2] + simulation.model.geom_size[geom, 2]
+        assert top == pytest.approx(box.high[2], abs=1.1e-3)
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_the_operators_parameters_reach_the_goal_without_touching_anything(simulation, start):
+    episode = run(simulation, OPERATOR_MEANS, start)
+    assert episode.is_success
+    assert 6.5 < episode.success_time < 8.0
+    assert episode.contact.touches == 0
+    assert episode.clearance > 0.02
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_the_arm_keeps_its_shape_and_distance_from_its_joint_limits(simulation, start):
+    joints = run(simulation, OPERATOR_MEANS, start).joint_positions
+    limits = simulation.model.jnt_range[:, 1]
+    assert (limits - np.abs(joints)).min() > 0.1
+    assert (joints[:, 3] < -0.3).all()  # the elbow never stretches out and flips
+
+
+def test_heading_straight_for_the_goal_gets_stuck_at_the_engine(simulation):
+    episode = run(simulation, STRAIGHT_THROUGH_THE_ENGINE)
+    assert not episode.is_success
+    assert episode.contact.touches >= 1
+    assert episode.contact.seconds > 5.0
+
+
+def test_pressing_on_the_table_is_a_touch_and_not_a_success(simulation):
+    episode = run(simulation, PRESSED_ON_THE_TABLE)
+    assert not episode.is_success
+    assert episode.contact.touches >= 1
+    assert episode.contact.deepest_penetration < 1e-3
+
+
+def test_a_collision_with_the_engine_improves_no_objective(simulation):
+    good, bad = (measure(TASK, run(simulation, p)) for p in (OPERATOR_MEANS, STRAIGHT_THROUGH_THE_ENGINE))
+    assert bad["performance"] < good["performance"]
+    assert bad["safety"] < good["safety"]
+
+
+@pytest.mark.parametrize("bad", [STRAIGHT_THROUGH_THE_ENGINE, PRESSED_ON_THE_TABLE])
+def test_a_collision_ends_no_charge(simulation, bad):
+    episode = run(simulation, bad)
+    for term in TASK.objectives["safety"]:
+        rewards = term.reward(episode)
+        assert len(rewards) == 120
+        assert (rewards < 0.0).all()
+        assert rewards[-1] == pytest.approx(rewards[60], rel=1e-2)

@@ -1,0 +1,85 @@
+"""Tests for rollout.py."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from robot_tasks.evaluation import measure
+from robot_tasks.rollout import rollout
+from robot_tasks.tasks import TASKS
+from tests.robot_tasks.conftest import OPERATOR_MEANS, PRESSED_ON_THE_TABLE, STRAIGHT_THROUGH_THE_ENGINE
+
+TASK = TASKS["obstacle_avoidance"]
+NEVER_CROSSES = OPERATOR_MEANS | {"mp2_threshold": 1.5}
+ENDS_EARLY = {
+    "success": OPERATOR_MEANS,
+    "stuck at the engine": STRAIGHT_THROUGH_THE_ENGINE,
+    "pressed on the table": PRESSED_ON_THE_TABLE,
+    "waiting at the first way-point": NEVER_CROSSES,
+}
+
+
+def run(simulation, parameters, *, start="s0", **options):
+    return rollout(TASK, parameters, TASK.randomization.nominal(start), simulation, **options)
+
+
+@pytest.mark.parametrize("parameters", ENDS_EARLY.values(), ids=ENDS_EARLY)
+def test_an_early_end_changes_no_number_by_more_than_a_thousandth(simulation, parameters):
+    early = run(simulation, parameters)
+    full = run(simulation, parameters, stop_when_still=False)
+    assert early.simulated_seconds < 12.0
+    assert full.simulated_seconds == pytest.approx(12.0)
+    early_numbers, full_numbers = measure(TASK, early), measure(TASK, full)
+    del early_numbers["simulated_seconds"], full_numbers["simulated_seconds"]
+    assert early_numbers == pytest.approx(full_numbers, rel=1e-3, abs=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_early_end_is_as_harmless_for_random_parameters(simulation, seed):
+    rng = np.random.default_rng(seed)
+    parameters = {parameter.name: rng.uniform(parameter.low, parameter.high) for parameter in TASK.parameters}
+    variation = TASK.randomization.sample(rng)
+    early, full = (rollout(TASK, parameters, variation, simulation, stop_when_still=stop) for stop in (True, False))
+    for term in TASK.terms:
+        assert term.total(early) == pytest.approx(term.total(full), rel=1e-3)
+
+
+def test_the_grid_has_a_sample_every_tenth_of_a_second(simulation):
+    episode = run(simulation, OPERATOR_MEANS)
+    assert episode.times == pytest.approx(np.arange(121) / 10)
+    assert episode.n_steps == 120
+
+
+def test_the_first_sample_is_the_start_and_the_last_is_held(simulation):
+    episode = run(simulation, OPERATOR_MEANS)
+    assert episode.joint_positions[0] == pytest.approx(TASK.randomization.starts["s0"])
+    last = round(episode.simulated_seconds * 10)
+    assert (episode.tip_positions[last:] == episode.tip_positions[last]).all()
+    assert (episode.tip_positions[last - 20] != episode.tip_positions[last]).any()
+
+
+def test_success_is_the_first_tick_within_the_success_distance(simulation):
+    episode = run(simulation, OPERATOR_MEANS)
+    distances = np.linalg.norm(episode.tip_positions - [-0.6, 0.0, 0.7], axis=1)
+    assert episode.success_time == pytest.approx(episode.times[np.argmax(distances < 0.05)], abs=0.1)
+
+
+def test_the_reference_never_runs_far_ahead_of_the_arm_in_free_space(simulation):
+    episode = run(simulation, OPERATOR_MEANS)
+    assert np.linalg.norm(episode.reference_positions - episode.tip_positions, axis=1).max() < 0.08
+
+
+def test_physics_in_single_steps_and_in_blocks_agree_to_the_last_bit(simulation, monkeypatch):
+    blocks = run(simulation, OPERATOR_MEANS)
+    monkeypatch.setattr("robot_tasks.contacts.ContactMonitor.is_near", lambda self: True)
+    single_steps = run(simulation, OPERATOR_MEANS)
+    for field in dataclasses.fields(blocks):
+        assert np.array_equal(getattr(blocks, field.name), getattr(single_steps, field.name))
+
+
+def test_half_the_physics_step_gives_the_same_motion(simulation, monkeypatch):
+    coarse = run(simulation, OPERATOR_MEANS, start="s1")
+    monkeypatch.setattr(simulation.model.opt, "timestep", 0.001)
+    fine = run(simulation, OPERATOR_MEANS, start="s1")
+    assert fine.tip_positions == pytest.approx(coarse.tip_positions, abs=5e-4)
