@@ -1,0 +1,204 @@
+"""A run on disk: locked, appended to row by row, and read back after a stop."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from itertools import count
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from hypermap_lite.errors import RunFolderError
+from hypermap_lite.evaluation.outcome import Evaluation, Replicate
+from hypermap_lite.history.csv_format import complete_length, format_record, parse_rows, read_records
+from hypermap_lite.history.files import append_durably, explained, truncate, write_atomically
+from hypermap_lite.history.lock import FolderLock
+from hypermap_lite.history.rows import EvaluationsFormat, HistoryFormat, check_header, read_history
+from hypermap_lite.history.run_log import run_log
+from hypermap_lite.history.scenario_record import check_scenario, write_scenario
+from hypermap_lite.objectives import Objective, values_of
+from hypermap_lite.pareto.dominance import non_dominated
+from hypermap_lite.space.search_space import SearchSpace
+
+logger = logging.getLogger(__name__)
+
+
+class RunFolder:
+    """One run's files, open for writing as a context manager.
+
+    A row is on the disk when the call that appends it returns. Whole files are only ever replaced at once.
+
+    Parameters
+    ----------
+    path
+        The folder; created with its parents.
+    space, objectives
+        What the columns mean.
+    canonical
+        The effective scenario as JSON, written beside the results and compared with what is there.
+    """
+
+    def __init__(
+        self, path: str | Path, *, space: SearchSpace, objectives: Sequence[Objective], canonical: Mapping[str, Any]
+    ) -> None:
+        self.path = Path(path).absolute()
+        self.objectives = tuple(objectives)
+        self.canonical = canonical
+        self.evaluations: list[Evaluation] = []
+        """Rows of ``history.csv``, trial 0 first."""
+        self.replicates: dict[tuple[int, int], Replicate] = {}
+        """Rows of ``evaluations.csv`` by trial and replicate."""
+        self._history = HistoryFormat(space, objectives)
+        self._calls = EvaluationsFormat(space, objectives)
+        self._open = ExitStack()
+
+    @property
+    def history_path(self) -> Path:
+        """``history.csv``: a row per configuration."""
+        return self.path / "history.csv"
+
+    @property
+    def evaluations_path(self) -> Path:
+        """``evaluations.csv``: a row per replicate."""
+        return self.path / "evaluations.csv"
+
+    @property
+    def pareto_path(self) -> Path:
+        """``pareto.csv``: the non-dominated rows of ``history.csv``."""
+        return self.path / "pareto.csv"
+
+    @property
+    def scenario_path(self) -> Path:
+        """``scenario.json``: the effective scenario and the versions in use."""
+        return self.path / "scenario.json"
+
+    def trial_folder(self, trial: int) -> Path:
+        """Return where the logs and files of one trial go; it may not exist yet."""
+        return self.path / "trials" / f"{trial:04d}"
+
+    def __enter__(self) -> Self:
+        """Lock the folder, check that it belongs to the scenario, and read what is there.
+
+        Raises
+        ------
+        RunFolderError
+            If another process writes it, its scenario differs, a file is damaged, or it cannot be written.
+        """
+        with ExitStack() as stack:
+            stack.enter_context(FolderLock(self.path))
+            self._check_owner()
+            write_scenario(self.scenario_path, self.canonical)
+            stack.enter_context(run_log(self.path / "run.log"))
+            self._load()
+            self._open = stack.pop_all()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the log and release the lock."""
+        self._open.close()
+
+    def _check_owner(self) -> None:
+        if not self.scenario_path.exists() and self.history_path.exists():
+            raise RunFolderError(
+                f"{self.path}: has a history.csv but no scenario.json, so it is not known what its rows mean\n"
+                "  hint: Choose another folder with --output-dir, or --fresh to start anew (this one is kept aside)."
+            )
+        check_scenario(self.scenario_path, self.canonical)
+
+    def _load(self) -> None:
+        for path in (self.history_path, self.evaluations_path):
+            self._drop_torn_line(path)
+        space, objectives = self._history.space, self.objectives
+        self.evaluations = read_history(self.history_path, space, objectives)
+        records = read_records(self.evaluations_path)
+        if records:
+            self._calls.metrics = self._calls.metrics_in(records[0])
+            check_header(self.evaluations_path, records[0], self._calls.columns)
+        rows = parse_rows(self.evaluations_path, records, self._calls.parse)
+        self.replicates = {(row.trial, row.replicate): row for row in rows}
+
+    def _drop_torn_line(self, path: Path) -> None:
+        if path.exists():
+            with explained(path):
+                content = path.read_bytes()
+            if (end := complete_length(content)) < len(content):
+                logger.warning("%s: the last line was cut off and is dropped: %r", path.name, content[end:][:80])
+                truncate(path, end)
+
+    def append_replicate(self, replicate: Replicate) -> None:
+        """Add a finished call of the black box to ``evaluations.csv``.
+
+        A new extra number gets its column by rewriting the file.
+        """
+        is_first = not self.replicates
+        self.replicates[replicate.trial, replicate.replicate] = replicate
+        new = [name for name in replicate.outcome.metrics if name not in self._calls.metrics]
+        if new or is_first:
+            self._calls.metrics = (*self._calls.metrics, *new)
+            self._rewrite_calls(self.replicates.values())
+        else:
+            append_durably(self.evaluations_path, self._calls.format(replicate))
+
+    def append_evaluation(self, evaluation: Evaluation) -> None:
+        """Add the next configuration's row to ``history.csv``.
+
+        Raises
+        ------
+        RunFolderError
+            If it is not the next trial, or the file cannot be written.
+        """
+        if evaluation.trial != len(self.evaluations):
+            raise RunFolderError(f"{self.history_path}: trial {evaluation.trial} is not the next one")
+        row = self._history.format(evaluation)
+        if self.evaluations:
+            append_durably(self.history_path, row)
+        else:
+            write_atomically(self.history_path, format_record(self._history.columns) + row)
+        self.evaluations.append(evaluation)
+
+    def write_pareto(self) -> None:
+        """Rewrite ``pareto.csv`` from the rows so far."""
+        rows = [self._history.format(e) for e in self.pareto_front()]
+        write_atomically(self.pareto_path, format_record(self._history.columns) + "".join(rows))
+
+    def pareto_front(self) -> list[Evaluation]:
+        """Return the non-dominated completed evaluations, in the order of the trials."""
+        completed = [e for e in self.evaluations if e.is_completed]
+        if not completed:
+            return []
+        is_optimal = non_dominated(np.array([values_of(self.objectives, e.values) for e in completed]))
+        return [e for e, keep in zip(completed, is_optimal, strict=True) if keep]
+
+    def sort_replicates(self) -> None:
+        """Rewrite ``evaluations.csv`` in the order of trials and replicates, whichever finished first."""
+        ordered = [self.replicates[key] for key in sorted(self.replicates)]
+        self._calls.metrics = tuple(dict.fromkeys(name for row in ordered for name in row.outcome.metrics))
+        if ordered:
+            self._rewrite_calls(ordered)
+
+    def _rewrite_calls(self, rows: Iterable[Replicate]) -> None:
+        text = format_record(self._calls.columns) + "".join(map(self._calls.format, rows))
+        write_atomically(self.evaluations_path, text)
+
+
+def set_aside(path: Path) -> Path | None:
+    """Rename a run folder to the first free ``<name>.bak-N``; return the new path, or None if there was none.
+
+    Raises
+    ------
+    RunFolderError
+        If another process writes it, or it cannot be renamed.
+    """
+    if not path.exists():
+        return None
+    candidates = (path.with_name(f"{path.name}.bak-{n}") for n in count(1))
+    target = next(candidate for candidate in candidates if not candidate.exists())
+    with FolderLock(path), explained(path):
+        path.rename(target)
+    return target

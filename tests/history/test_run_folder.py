@@ -1,0 +1,162 @@
+"""Tests for run_folder.py."""
+
+import csv
+import logging
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from hypermap_lite.errors import RunFolderError
+from hypermap_lite.history.lock import FolderLock
+from hypermap_lite.history.run_folder import set_aside
+from tests.history.examples import evaluation, folder, replicate
+
+
+def rows_of(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_rows_read_back_in_the_next_session(tmp_path):
+    with folder(tmp_path / "run") as run:
+        run.append_replicate(replicate(0, speed=2.0))
+        run.append_evaluation(evaluation(0))
+        run.append_evaluation(evaluation(1, None))
+    with folder(tmp_path / "run") as run:
+        assert [(e.trial, e.error) for e in run.evaluations] == [(0, ""), (1, "it broke")]
+        assert run.replicates == {(0, 0): replicate(0, speed=2.0)}
+
+
+def test_row_is_in_the_file_when_append_returns(tmp_path):
+    with folder(tmp_path) as run:
+        for trial in range(3):
+            run.append_evaluation(evaluation(trial))
+            run.append_replicate(replicate(trial))
+            assert [row["trial"] for row in rows_of(run.history_path)] == [str(t) for t in range(trial + 1)]
+            assert [row["trial"] for row in rows_of(run.evaluations_path)] == [str(t) for t in range(trial + 1)]
+
+
+def test_row_out_of_order_is_refused(tmp_path):
+    with folder(tmp_path) as run, pytest.raises(RunFolderError, match="trial 1 is not the next one"):
+        run.append_evaluation(evaluation(1))
+
+
+def test_new_metric_gets_a_column_and_no_row_is_lost(tmp_path):
+    with folder(tmp_path) as run:
+        for row in (replicate(0), replicate(0, 1, speed=1.0), replicate(0, 2, seconds=9.0, speed=2.0)):
+            run.append_replicate(row)
+        rows = rows_of(run.evaluations_path)
+    assert [(row["speed"], row["result.seconds"]) for row in rows] == [("", ""), ("1.0", ""), ("2.0", "9.0")]
+    with folder(tmp_path) as run:
+        assert run.replicates[0, 2].outcome.metrics == {"speed": 2.0, "seconds": 9.0}
+
+
+def test_sorting_makes_the_file_independent_of_who_was_first(tmp_path):
+    calls = [replicate(0, 0, a=1.0), replicate(0, 1, b=2.0), replicate(1, 0)]
+    texts = []
+    for name, order in (("x", calls), ("y", calls[::-1])):
+        with folder(tmp_path / name) as run:
+            for call in order:
+                run.append_replicate(call)
+            run.sort_replicates()
+            texts.append(run.evaluations_path.read_text())
+    assert texts[0] == texts[1]
+    assert [line.split(",")[:2] for line in texts[0].splitlines()[1:]] == [["0", "0"], ["0", "1"], ["1", "0"]]
+
+
+def test_front_has_the_non_dominated_completed_rows(tmp_path):
+    with folder(tmp_path) as run:
+        for trial, values in enumerate([(1.0, 1.0), (2.0, 2.0), (0.5, 2.0), (None, 0.0), (2.0, 2.0)]):
+            run.append_evaluation(evaluation(trial, *values))
+        run.write_pareto()
+        assert [row["trial"] for row in rows_of(run.pareto_path)] == ["0", "1", "4"]
+
+
+def test_front_without_rows_is_only_a_header(tmp_path):
+    with folder(tmp_path) as run:
+        run.write_pareto()
+        assert rows_of(run.pareto_path) == []
+
+
+def test_folder_of_another_scenario_is_refused(tmp_path):
+    with folder(tmp_path):
+        pass
+    with pytest.raises(RunFolderError, match=r"another scenario\n  \$.seed: 1 there, 2 now"), folder(tmp_path, seed=2):
+        pass
+
+
+def test_folder_with_rows_of_unknown_meaning_is_refused(tmp_path):
+    (tmp_path / "history.csv").write_text("a,b\n")
+    with pytest.raises(RunFolderError, match=r"has a history.csv but no scenario.json"), folder(tmp_path):
+        pass
+
+
+def test_folder_in_use_is_refused(tmp_path):
+    with folder(tmp_path), pytest.raises(RunFolderError, match="another process"), folder(tmp_path):
+        pass
+
+
+def test_folder_that_was_refused_is_not_left_locked(tmp_path):
+    with folder(tmp_path):
+        pass
+    with pytest.raises(RunFolderError, match="another scenario"), folder(tmp_path, seed=2):
+        pass
+    with folder(tmp_path):
+        pass
+
+
+@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_cut_at_any_byte_loses_at_most_the_row_that_was_cut(tmp_path_factory, data):
+    path = tmp_path_factory.mktemp("run")
+    lengths = []
+    with folder(path) as run:
+        for trial in range(3):
+            run.append_evaluation(evaluation(trial))
+            run.append_replicate(replicate(trial, speed=trial))
+            lengths.append((run.history_path.stat().st_size, run.evaluations_path.stat().st_size))
+    cuts = [data.draw(st.integers(0, size)) for size in lengths[-1]]
+    for name, cut in zip(("history.csv", "evaluations.csv"), cuts, strict=True):
+        (path / name).write_bytes((path / name).read_bytes()[:cut])
+    with folder(path) as run:
+        assert len(run.evaluations) == sum(size <= cuts[0] for size, _ in lengths)
+        assert len(run.replicates) == sum(size <= cuts[1] for _, size in lengths)
+        for trial in range(len(run.evaluations), 3):
+            run.append_evaluation(evaluation(trial))
+        for trial in range(len(run.replicates), 3):
+            run.append_replicate(replicate(trial, speed=trial))
+    assert (path / "history.csv").stat().st_size == lengths[-1][0]
+    assert (path / "evaluations.csv").stat().st_size == lengths[-1][1]
+
+
+def test_torn_line_is_reported_and_cut_off(tmp_path, caplog):
+    with folder(tmp_path) as run:
+        run.append_evaluation(evaluation(0))
+        run.append_evaluation(evaluation(1))
+        size = run.history_path.stat().st_size
+    with (tmp_path / "history.csv").open("a") as file:
+        file.write('0.5,"tor')
+    with caplog.at_level(logging.WARNING), folder(tmp_path) as run:
+        assert len(run.evaluations) == 2
+        assert run.history_path.stat().st_size == size
+    assert "history.csv: the last line was cut off" in caplog.text
+    assert "the last line was cut off" in (tmp_path / "run.log").read_text()
+
+
+def test_old_folder_is_kept_under_another_name(tmp_path):
+    for _ in range(2):
+        with folder(tmp_path / "run") as run:
+            run.append_evaluation(evaluation(0))
+        set_aside(tmp_path / "run")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["run.bak-1", "run.bak-2"]
+    assert (tmp_path / "run.bak-2" / "history.csv").exists()
+
+
+def test_nothing_is_set_aside_where_there_is_nothing(tmp_path):
+    assert set_aside(tmp_path / "run") is None
+
+
+def test_folder_in_use_is_not_set_aside(tmp_path):
+    with FolderLock(tmp_path / "run"), pytest.raises(RunFolderError, match="another process"):
+        set_aside(tmp_path / "run")

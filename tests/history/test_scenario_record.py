@@ -1,0 +1,86 @@
+"""Tests for scenario_record.py."""
+
+import json
+import logging
+
+import pytest
+
+from hypermap_lite.errors import RunFolderError
+from hypermap_lite.history import scenario_record
+from hypermap_lite.history.scenario_record import check_scenario, differing, write_scenario
+
+SCENARIO = {
+    "seed": 1,
+    "input_parameters": {"x": {"parameter_type": "real", "values": (0, 1.0)}},
+    "budget": {"evaluations": 9, "batch_size": 1, "minutes": None},
+    "evaluator": {"type": "command", "workers": 1, "timeout_seconds": None},
+    "output": {"directory": "outputs/a"},
+    "description": "",
+}
+
+
+def changed(section, **entries):
+    return {**SCENARIO, section: {**SCENARIO[section], **entries}}
+
+
+def test_scenario_is_written_with_the_versions_in_use(tmp_path):
+    write_scenario(tmp_path / "scenario.json", SCENARIO)
+    content = json.loads((tmp_path / "scenario.json").read_text())
+    assert content["input_parameters"]["x"]["values"] == [0, 1.0]
+    assert {"hypermap_lite", "python", "numpy"} <= set(content["versions"])
+
+
+def test_same_scenario_passes(tmp_path):
+    write_scenario(tmp_path / "scenario.json", SCENARIO)
+    check_scenario(tmp_path / "scenario.json", json.loads(json.dumps(SCENARIO)))
+
+
+def test_absent_record_passes(tmp_path):
+    check_scenario(tmp_path / "scenario.json", SCENARIO)
+
+
+@pytest.mark.parametrize(
+    "scenario",
+    [
+        changed("budget", evaluations=50, minutes=3.0),
+        changed("evaluator", workers=4, timeout_seconds=2.5),
+        changed("output", directory="elsewhere"),
+        {**SCENARIO, "description": "Now with a word of explanation."},
+    ],
+    ids=["budget", "evaluator", "output", "description"],
+)
+def test_change_that_leaves_the_rows_valid_passes(tmp_path, scenario):
+    write_scenario(tmp_path / "scenario.json", SCENARIO)
+    check_scenario(tmp_path / "scenario.json", scenario)
+
+
+def test_every_difference_is_named_with_both_values(tmp_path):
+    write_scenario(tmp_path / "scenario.json", SCENARIO)
+    other = changed("budget", batch_size=3) | {"seed": 2, "preset": "paper"}
+    with pytest.raises(RunFolderError) as caught:
+        check_scenario(tmp_path / "scenario.json", other)
+    assert str(caught.value).splitlines()[1:4] == [
+        "  $.seed: 1 there, 2 now",
+        "  $.budget.batch_size: 1 there, 3 now",
+        '  $.preset: nothing there, "paper" now',
+    ]
+    assert "--fresh" in str(caught.value)
+
+
+def test_whole_numbers_are_equal_however_written():
+    assert list(differing({"a": 1.0, "b": [2.0, {"c": 3.0}]}, {"a": 1, "b": [2, {"c": 3}]})) == []
+
+
+def test_other_library_version_is_only_warned_of(tmp_path, monkeypatch, caplog):
+    write_scenario(tmp_path / "scenario.json", SCENARIO)
+    monkeypatch.setattr(scenario_record, "installed_versions", lambda: {"numpy": "9.9"})
+    with caplog.at_level(logging.WARNING):
+        check_scenario(tmp_path / "scenario.json", SCENARIO)
+    assert "numpy was" in caplog.text
+
+
+@pytest.mark.parametrize(("content", "message"), [("{", "cannot be read"), ("[]", "is not a scenario")])
+def test_damaged_record_is_an_error(tmp_path, content, message):
+    (tmp_path / "scenario.json").write_text(content)
+    with pytest.raises(RunFolderError, match=message):
+        check_scenario(tmp_path / "scenario.json", SCENARIO)
