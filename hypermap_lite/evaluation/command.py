@@ -1,0 +1,212 @@
+"""A black box that is any program: arguments in, JSON out."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from hypermap_lite.errors import EvaluationError, ScenarioError, nearest
+from hypermap_lite.evaluation.evaluator import EvaluationRequest, outcome_of
+from hypermap_lite.evaluation.outcome import Outcome
+from hypermap_lite.evaluation.placeholders import BUILT_IN, as_argument, fill, placeholders_in, unknown_placeholders
+
+TAIL_BYTES: Final = 1 << 20
+"""How much of a program's output is looked at for its last line [bytes]."""
+
+THREAD_CAPS: Final = "HYPERMAP_THREAD_CAPS"
+"""Environment variable that names the thread limits a worker set for itself; programs are started without them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Command:
+    """Runs a program once per call and reads a JSON object with the objectives.
+
+    The program's output goes to ``replicate_0.stdout.log`` and ``.stderr.log`` in the trial's folder. It is run in
+    the process group of the caller, so a worker that is killed takes it along.
+
+    Raises
+    ------
+    ScenarioError
+        If the program is not found or a placeholder is not known.
+    """
+
+    command: Sequence[str]
+    """Program and arguments, with placeholders in braces: every parameter's name and those of `BUILT_IN`."""
+
+    objectives: Sequence[str]
+    """Names of the objectives."""
+
+    shell: bool = False
+    """Whether the arguments are joined by blanks and run by ``/bin/sh``; placeholders are quoted for it."""
+
+    result: str = "stdout"
+    """``stdout``: the last line that is not empty; ``file``: the file ``{result_file}``."""
+
+    working_directory: str | Path = "."
+    """Folder the program runs in; one named with a slash is looked for there."""
+
+    parameters: Sequence[str] | None = None
+    """Names of the parameters, to check the placeholders; None leaves them unchecked."""
+
+    def __post_init__(self) -> None:
+        if isinstance(self.command, str) or not self.command:
+            raise ScenarioError(
+                "$.command", f"the command is {self.command!r}", allowed="a list of at least one string"
+            )
+        if self.result not in ("stdout", "file"):
+            raise ScenarioError("$.result", f"the result is {self.result!r}", allowed="'stdout' or 'file'")
+        object.__setattr__(self, "working_directory", Path(self.working_directory).absolute())
+        self._check_placeholders()
+        if not self.shell and not any(placeholders_in(self.command[0])):
+            check_program(self.command[0], Path(self.working_directory))
+
+    def _check_placeholders(self) -> None:
+        if self.parameters is None:
+            return
+        for position, name in unknown_placeholders(self.command, self.parameters):
+            known = [*self.parameters, *BUILT_IN]
+            guess = nearest(name, known)
+            raise ScenarioError(
+                f"$.command[{position}]",
+                f"unknown placeholder {{{name}}}",
+                allowed=", ".join(f"{{{k}}}" for k in known),
+                hint=f"{guess} For the text itself, write {{{{{name}}}}}.".strip(),
+            )
+
+    def __call__(self, request: EvaluationRequest) -> Outcome:
+        """Run the program once.
+
+        Raises
+        ------
+        EvaluationError
+            If it cannot be started, fails, or leaves no JSON object.
+        """
+        prepare_folder(request)
+        values = placeholder_values(request)
+        arguments = [fill(argument, values, quote=self.shell) for argument in self.command]
+        self._run(" ".join(arguments) if self.shell else arguments, request)
+        return outcome_of(self._read_result(request), self.objectives)
+
+    def _run(self, arguments: str | list[str], request: EvaluationRequest) -> None:
+        stderr = request.file("stderr.log")
+        with request.file("stdout.log").open("wb") as out, stderr.open("wb") as err:
+            try:
+                status = subprocess.run(
+                    arguments,
+                    shell=self.shell,
+                    cwd=self.working_directory,
+                    env=environment(request),
+                    stdin=subprocess.DEVNULL,
+                    stdout=out,
+                    stderr=err,
+                    check=False,
+                ).returncode
+            except (OSError, ValueError) as error:
+                raise EvaluationError(f"the program could not be started: {error}") from error
+        if status:
+            said = last_text_line(stderr)
+            raise EvaluationError(describe_status(status) + (f": {said}" if said else ""))
+
+    def _read_result(self, request: EvaluationRequest) -> Mapping[str, object]:
+        if self.result == "file":
+            place, path = "the result file", request.file("result.json")
+            text = path.read_text(encoding="utf-8", errors="replace") if path.exists() else ""
+        else:
+            place, path = "the last line of the output", request.file("stdout.log")
+            text = last_text_line(path)
+        try:
+            result = json.loads(text)
+        except ValueError:
+            result = None
+        if isinstance(result, dict):
+            return result
+        shown = repr(text[:80]) if text.strip() else "empty"
+        said = last_text_line(request.file("stderr.log"))
+        raise EvaluationError(f"{place} is {shown}, not a JSON object" + (f" (stderr: {said})" if said else ""))
+
+
+def check_program(program: str, working_directory: Path) -> None:
+    """Raise a `ScenarioError` if a program cannot be found or run."""
+    path = working_directory / program
+    if "/" not in program:
+        if shutil.which(program):
+            return
+        hint = f"Write './{program}' for the file in {working_directory}." if path.is_file() else "Is it installed?"
+        raise ScenarioError("$.command[0]", f"the program '{program}' is not on the PATH", hint=hint)
+    if not path.is_file():
+        raise ScenarioError(
+            "$.command[0]", f"there is no program '{path}'", hint="Paths start at the scenario's folder."
+        )
+    if not os.access(path, os.X_OK):
+        raise ScenarioError("$.command[0]", f"'{path}' is not executable", hint=f"chmod +x {shlex.quote(str(path))}")
+
+
+def prepare_folder(request: EvaluationRequest) -> None:
+    """Create the trial's folder with ``parameters.json`` and without an older result."""
+    request.directory.mkdir(parents=True, exist_ok=True)
+    request.file("result.json").unlink(missing_ok=True)
+    temporary = request.file("parameters.tmp")
+    temporary.write_text(json.dumps(dict(request.configuration)) + "\n", encoding="utf-8")
+    temporary.replace(parameters_file(request))
+
+
+def parameters_file(request: EvaluationRequest) -> Path:
+    """Return where the configuration is written as JSON."""
+    return request.directory / "parameters.json"
+
+
+def placeholder_values(request: EvaluationRequest) -> dict[str, str]:
+    """Return what each placeholder stands for; a parameter goes before a built-in of the same name."""
+    return {
+        "params_json": json.dumps(dict(request.configuration)),
+        "params_file": str(parameters_file(request)),
+        "result_file": str(request.file("result.json")),
+        "seed": str(request.seed),
+        "trial": str(request.trial),
+        "replicate": str(request.replicate),
+        "trial_dir": str(request.directory),
+        "python": sys.executable,
+        **{name: as_argument(value) for name, value in request.configuration.items()},
+    }
+
+
+def environment(request: EvaluationRequest) -> dict[str, str]:
+    """Return the program's environment: the user's own and the facts about the call."""
+    capped = os.environ.get(THREAD_CAPS, "").split()
+    inherited = {name: value for name, value in os.environ.items() if name not in (THREAD_CAPS, *capped)}
+    return inherited | {
+        "HYPERMAP_PARAMS_FILE": str(parameters_file(request)),
+        "HYPERMAP_RESULT_FILE": str(request.file("result.json")),
+        "HYPERMAP_SEED": str(request.seed),
+        "HYPERMAP_TRIAL": str(request.trial),
+        "HYPERMAP_REPLICATE": str(request.replicate),
+    }
+
+
+def last_text_line(path: Path) -> str:
+    """Return the last line of a file that is not empty, stripped; nothing if there is none."""
+    with path.open("rb") as file:
+        file.seek(0, os.SEEK_END)
+        file.seek(max(0, file.tell() - TAIL_BYTES))
+        lines = file.read().decode("utf-8", errors="replace").splitlines()
+    return next((line.strip() for line in reversed(lines) if line.strip()), "")
+
+
+def describe_status(status: int) -> str:
+    """Say in words how a process ended: ``exit status 3`` or ``killed by signal 9 (SIGKILL)``."""
+    if status >= 0:
+        return f"exit status {status}"
+    try:
+        name = signal.Signals(-status).name
+    except ValueError:
+        return f"killed by signal {-status}"
+    return f"killed by signal {-status} ({name})"

@@ -1,0 +1,161 @@
+"""The black box as the runner sees it: one call, one outcome."""
+
+from __future__ import annotations
+
+import math
+import time
+import traceback
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Real
+from pathlib import Path
+from typing import Protocol
+
+from hypermap_lite.errors import EvaluationError
+from hypermap_lite.evaluation.outcome import Outcome, Replicate, State
+from hypermap_lite.typing import Configuration
+
+FEASIBLE_KEY = "feasible"
+"""Entry of a result that says, if false, that the configuration is not allowed."""
+
+MAX_REASON = 300
+"""Characters of a failure's reason that go into a CSV."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvaluationRequest:
+    """One call to make."""
+
+    trial: int
+    replicate: int
+    seed: int
+    """For the black box's own randomness; different for every trial and replicate, 0 to 2**31 - 1."""
+
+    configuration: Configuration
+    directory: Path
+    """Folder for this trial's files, absolute; it may not exist yet."""
+
+    def file(self, ending: str) -> Path:
+        """Return where this call's file of a kind goes, as in ``replicate_0.stdout.log``."""
+        return self.directory / f"replicate_{self.replicate}.{ending}"
+
+
+class Evaluator(Protocol):
+    """Anything that evaluates a request; it must survive pickling unless it is only called in this process."""
+
+    def __call__(self, request: EvaluationRequest) -> Outcome:
+        """Return the outcome; an exception counts as a failure, an `EvaluationError` as one with a known reason."""
+
+
+def call(evaluator: Evaluator, request: EvaluationRequest) -> Replicate:
+    """Call the black box once; whatever it raises becomes a failed outcome, its traceback a file of the trial."""
+    start = time.perf_counter()
+    try:
+        outcome = evaluator(request)
+    except EvaluationError as error:
+        outcome = failure(str(error))
+    except (Exception, SystemExit) as error:
+        outcome = failure(last_line(error))
+        _keep_traceback(request)
+    return answer(request, outcome, time.perf_counter() - start)
+
+
+def answer(request: EvaluationRequest, outcome: Outcome, seconds: float) -> Replicate:
+    """Return the record of a call."""
+    return Replicate(
+        trial=request.trial,
+        replicate=request.replicate,
+        seed=request.seed,
+        configuration=request.configuration,
+        outcome=outcome,
+        seconds=seconds,
+    )
+
+
+def outcome_of(result: object, objectives: Sequence[str]) -> Outcome:
+    """Turn what a black box returned into an outcome.
+
+    Parameters
+    ----------
+    result
+        A mapping with every objective (its other finite numbers become metrics; ``{"feasible": false}`` needs no
+        objectives), or the objectives as a sequence in their order, or a number if there is only one.
+    objectives
+        Their names.
+
+    Returns
+    -------
+    Outcome
+        Completed, infeasible, or failed with the reason if a value is missing, not a number, NaN or infinite.
+    """
+    entries = _by_name(result, objectives)
+    if isinstance(entries, str):
+        return failure(entries)
+    numbers = {name: as_number(value) for name, value in entries.items()}
+    metrics = {
+        str(name): number
+        for name, number in numbers.items()
+        if name not in (*objectives, FEASIBLE_KEY) and number is not None and math.isfinite(number)
+    }
+    if FEASIBLE_KEY not in objectives and numbers.get(FEASIBLE_KEY) == 0:
+        return Outcome(state=State.INFEASIBLE, metrics=metrics, error="the black box answered: not feasible")
+    for name in objectives:
+        if name not in entries:
+            returned = ", ".join(map(str, entries)) or "nothing"
+            return failure(f"the result has no '{name}' (it has: {returned})", metrics)
+        value = numbers[name]
+        if value is None or not math.isfinite(value):
+            return failure(f"'{name}' is {entries[name]!r}, not a finite number", metrics)
+    values = {name: number for name in objectives if (number := numbers[name]) is not None}
+    return Outcome(state=State.COMPLETED, values=values, metrics=metrics)
+
+
+def _by_name(result: object, objectives: Sequence[str]) -> Mapping[str, object] | str:
+    """Return the entries of a result by name, or what is wrong with it."""
+    if isinstance(result, Mapping):
+        return result
+    if len(objectives) == 1 and as_number(result) is not None:
+        return {objectives[0]: result}
+    expected = f"expected a mapping with {', '.join(map(repr, objectives))}"
+    if isinstance(result, str | bytes) or not hasattr(result, "__len__") or not hasattr(result, "__iter__"):
+        return f"the result is {result!r}; {expected}"
+    items = list(result)
+    if len(items) != len(objectives):
+        return f"the result has {len(items)} numbers for {len(objectives)} objectives; {expected}"
+    return dict(zip(objectives, items, strict=True))
+
+
+def as_number(value: object) -> float | None:
+    """Return a number, truth value or one-element array as a float; None for anything else."""
+    item = getattr(value, "item", None)
+    if callable(item) and getattr(value, "size", 1) == 1:
+        value = item()
+    try:
+        return float(value) if isinstance(value, Real) else None
+    except OverflowError:
+        return math.inf
+
+
+def failure(reason: str, metrics: Mapping[str, float] | None = None) -> Outcome:
+    """Return a failed outcome; its reason is put on one line and cut to a sensible length."""
+    line = " ".join(reason.split()) or "no reason given"
+    return Outcome(
+        state=State.FAILED,
+        metrics=metrics or {},
+        error=line if len(line) <= MAX_REASON else line[: MAX_REASON - 4] + " ...",
+    )
+
+
+def last_line(error: BaseException) -> str:
+    """Return an exception as Python prints it below a traceback, as in ``ValueError: not a number``."""
+    name, message = type(error).__name__, " ".join(str(error).split())
+    return f"{name}: {message}" if message else name
+
+
+def _keep_traceback(request: EvaluationRequest) -> None:
+    """Write the current traceback beside the trial's logs; a folder that cannot be written is not the call's fault."""
+    try:
+        request.directory.mkdir(parents=True, exist_ok=True)
+        request.file("traceback.log").write_text(traceback.format_exc(), encoding="utf-8", errors="backslashreplace")
+    except OSError:
+        return

@@ -1,0 +1,114 @@
+"""A black box that is a Python function."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from hypermap_lite.errors import ScenarioError, nearest
+from hypermap_lite.evaluation.evaluator import EvaluationRequest, last_line, outcome_of
+from hypermap_lite.evaluation.outcome import Outcome
+
+PATH = "$.function"
+EXTRAS = ("seed", "replicate", "trial")
+"""Facts about a call that a function gets as keyword arguments if it has parameters of these names."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PythonFunction:
+    """Calls ``function(configuration)``, with ``seed=``, ``replicate=``, ``trial=`` if it takes them.
+
+    It returns a mapping with every objective (other numbers become columns of ``evaluations.csv``), a sequence with
+    the objectives in their order, or, for one objective, a number. ``{"feasible": False}`` marks a configuration
+    that is not allowed.
+
+    Raises
+    ------
+    ScenarioError
+        If the name does not lead to something callable.
+    """
+
+    function: str | Callable[..., object]
+    """``module:name``, or the function itself."""
+
+    objectives: Sequence[str]
+    """Names of the objectives."""
+
+    search_path: Sequence[str] = ()
+    """Folders to import from, before all others."""
+
+    _callable: Callable[..., object] = field(init=False, repr=False, compare=False)
+    _extras: tuple[str, ...] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        function = import_function(self.function, self.search_path) if isinstance(self.function, str) else self.function
+        object.__setattr__(self, "_callable", function)
+        object.__setattr__(self, "_extras", accepted_extras(function))
+
+    def __reduce__(self) -> tuple[Callable[..., PythonFunction], tuple[Any, ...]]:
+        """Pickle the name rather than what it leads to, so that a worker imports it itself."""
+        return _rebuild, (self.function, tuple(self.objectives), tuple(self.search_path))
+
+    def __call__(self, request: EvaluationRequest) -> Outcome:
+        """Call the function once."""
+        facts = {"seed": request.seed, "replicate": request.replicate, "trial": request.trial}
+        extras = {name: facts[name] for name in self._extras}
+        return outcome_of(self._callable(dict(request.configuration), **extras), self.objectives)
+
+
+def _rebuild(
+    function: str | Callable[..., object], objectives: Sequence[str], search_path: Sequence[str]
+) -> PythonFunction:
+    return PythonFunction(function=function, objectives=objectives, search_path=search_path)
+
+
+def accepted_extras(function: Callable[..., object]) -> tuple[str, ...]:
+    """Return which of `EXTRAS` a function accepts by keyword."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        return ()
+    if any(p.kind is p.VAR_KEYWORD for p in parameters):
+        return EXTRAS
+    named = {p.name for p in list(parameters)[1:] if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)}
+    return tuple(name for name in EXTRAS if name in named)
+
+
+def import_function(name: str, search_path: Sequence[str] = ()) -> Callable[..., object]:
+    """Return the function that ``module:name`` stands for.
+
+    Raises
+    ------
+    ScenarioError
+        If the name has another form, the module does not import (with the import's own error), or it holds no such
+        function.
+    """
+    module_name, colon, attribute = name.partition(":")
+    if not (module_name and colon and attribute):
+        raise ScenarioError(PATH, f"{name!r} does not name a function", allowed="'module:function', as in 'robot:move'")
+    for folder in reversed(search_path):
+        if folder not in sys.path:
+            sys.path.insert(0, folder)
+    try:
+        found: Any = importlib.import_module(module_name)
+    except (Exception, SystemExit) as error:
+        places = ", ".join(search_path) or "Python's module path"
+        raise ScenarioError(
+            PATH, f"importing '{module_name}' failed: {last_line(error)}", hint=f"It was looked for in {places}."
+        ) from error
+    for part in attribute.split("."):
+        if not hasattr(found, part):
+            raise ScenarioError(PATH, f"'{module_name}' has no '{attribute}'", hint=nearest(part, _functions_in(found)))
+        found = getattr(found, part)
+    if not callable(found):
+        raise ScenarioError(PATH, f"'{name}' is {type(found).__name__}, not a function", allowed="something callable")
+    function: Callable[..., object] = found
+    return function
+
+
+def _functions_in(module: object) -> list[str]:
+    return [name for name in dir(module) if not name.startswith("_") and callable(getattr(module, name, None))]

@@ -1,0 +1,219 @@
+"""The loop: ask for a batch, evaluate it, write it down, tell the optimizer.
+
+Batch b holds the trials from b k to (b + 1) k - 1, k being the batch size, and the optimizer sees the results of a
+batch only when all of it is done. So a run that goes on after a stop asks the same questions as one that never
+stopped, and the number of workers does not matter.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+from hypermap_lite.errors import NoValidEvaluationError, RepeatedFailureError
+from hypermap_lite.evaluation.aggregation import summarize
+from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
+from hypermap_lite.evaluation.executors import Executor
+from hypermap_lite.evaluation.observer import FrontTracker, RunObserver, describe
+from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
+from hypermap_lite.evaluation.seeds import replicate_seed
+from hypermap_lite.history.run_folder import RunFolder
+from hypermap_lite.optimizers.base import Optimizer
+from hypermap_lite.scenario.model import BudgetSpec
+from hypermap_lite.typing import Configuration
+
+logger = logging.getLogger(__name__)
+
+
+class StopReason(Enum):
+    """Why a run ended."""
+
+    BUDGET = "the budget of evaluations is used up"
+    TIME = "the time is up"
+    EXHAUSTED = "the search space holds no other configuration"
+    INTERRUPTED = "it was interrupted"
+
+
+class Clock:
+    """Time spent on a run, over all its sessions: each goes on from the last row of the one before."""
+
+    def __init__(self, elapsed_ms: int = 0) -> None:
+        self._elapsed_ms = elapsed_ms
+        self._start = time.monotonic()
+
+    @property
+    def ms(self) -> int:
+        """Time since the run began, without the time between its sessions [ms]."""
+        return self._elapsed_ms + round(1000 * (time.monotonic() - self._start))
+
+
+@dataclass(kw_only=True)
+class Runner:
+    """Drives one run from wherever its folder stands to its end."""
+
+    optimizer: Optimizer
+    """With an empty history; what the folder holds is told to it."""
+
+    evaluator: Evaluator
+    executor: Executor
+    folder: RunFolder
+    """Open for writing."""
+
+    budget: BudgetSpec
+    seed: int
+    replicates: int = 1
+    max_consecutive_failures: int = 5
+    observer: RunObserver = field(default_factory=RunObserver)
+    should_stop: Callable[[], bool] = lambda: False
+    """Asked before every call; once true, running calls are waited for and no other is begun."""
+
+    def run(self) -> StopReason:
+        """Evaluate until the budget, the time or the search space is used up, or a stop is asked for.
+
+        Raises
+        ------
+        RepeatedFailureError
+            If `max_consecutive_failures` configurations in a row failed or ran past the time limit.
+        NoValidEvaluationError
+            If the run ends and no configuration at all gave a usable result.
+        RunFolderError
+            If the folder cannot be written; what was finished before is kept.
+        """
+        self._restore()
+        reason = self._loop()
+        self.folder.sort_replicates()
+        self.folder.write_pareto()
+        logger.info("the run ends after %d evaluations: %s", len(self.folder.evaluations), reason.value)
+        if reason is not StopReason.INTERRUPTED:
+            self._require_result(reason)
+        return reason
+
+    def _restore(self) -> None:
+        """Tell the optimizer the batches that are complete on disk."""
+        rows = self.folder.evaluations
+        size = self.budget.batch_size
+        n_complete = len(rows) if len(rows) >= self.budget.evaluations else len(rows) // size * size
+        self.optimizer.history.extend(rows[:n_complete])
+        self._clock = Clock(max((row.timestamp for row in rows), default=0))
+        self._front = FrontTracker(self.folder.objectives)
+        for row in rows:
+            self._front.add(row)
+        # After a stop for failures the same command tries anew; after any other stop the count goes on.
+        self._failures = _failures_at_end(rows) % self.max_consecutive_failures
+        if rows or self.folder.replicates:
+            n_calls = len(self.folder.replicates)
+            logger.info("going on with %s: %d evaluations, %d calls are done", self.folder.path, len(rows), n_calls)
+        self.observer.on_start(done=len(rows), total=self.budget.evaluations)
+
+    def _loop(self) -> StopReason:
+        while (reason := self._reason_to_stop()) is None:
+            n = min(self.budget.batch_size, self.budget.evaluations - len(self.optimizer.history))
+            suggestions = [self._as_recorded(s) for s in self.optimizer.ask(n)]
+            if not suggestions:
+                return StopReason.EXHAUSTED
+            self._evaluate(suggestions)
+        return reason
+
+    def _reason_to_stop(self) -> StopReason | None:
+        if self.should_stop():
+            return StopReason.INTERRUPTED
+        if len(self.optimizer.history) >= self.budget.evaluations:
+            return StopReason.BUDGET
+        if self.budget.minutes is not None and self._clock.ms >= 60_000 * self.budget.minutes:
+            return StopReason.TIME
+        return None
+
+    def _as_recorded(self, suggestion: Suggestion) -> Suggestion:
+        """Return the suggestion with the configuration that was evaluated before the stop, if it was another."""
+        recorded = self._recorded_configuration(suggestion.trial)
+        if recorded is None or recorded == suggestion.configuration:
+            return suggestion
+        logger.warning(
+            "trial %d would now be %s, but %s has been evaluated and is kept (was the code or a library changed?)",
+            *(suggestion.trial, suggestion.configuration, recorded),
+        )
+        adopted = replace(suggestion, configuration=recorded)
+        self.optimizer.adopt(adopted)
+        return adopted
+
+    def _recorded_configuration(self, trial: int) -> Configuration | None:
+        if trial < len(self.folder.evaluations):
+            return self.folder.evaluations[trial].configuration
+        calls = (self.folder.replicates.get((trial, r)) for r in range(self.replicates))
+        return next((call.configuration for call in calls if call is not None), None)
+
+    def _evaluate(self, suggestions: Sequence[Suggestion]) -> None:
+        """Make the calls of a batch that are missing; tell the optimizer if none is missing any more."""
+        missing = list(self._missing(suggestions))
+        self.observer.on_suggestions([s.trial for s in suggestions], len(missing))
+        self._record_finished(suggestions)
+        requests = (request for request in missing if not self.should_stop())
+        with closing(self.executor.run(self.evaluator, requests)) as finished:
+            for call in finished:
+                self.folder.append_replicate(call)
+                self.observer.on_replicate(call)
+                self._record_finished(suggestions)
+        rows = self.folder.evaluations[suggestions[0].trial : suggestions[-1].trial + 1]
+        self.folder.write_pareto()
+        if len(rows) == len(suggestions):
+            self.optimizer.tell(rows)
+
+    def _missing(self, suggestions: Sequence[Suggestion]) -> Iterator[EvaluationRequest]:
+        for suggestion in suggestions:
+            trial = suggestion.trial
+            for r in range(self.replicates):
+                if trial >= len(self.folder.evaluations) and (trial, r) not in self.folder.replicates:
+                    yield EvaluationRequest(
+                        trial=trial,
+                        replicate=r,
+                        seed=replicate_seed(self.seed, trial, r),
+                        configuration=suggestion.configuration,
+                        directory=self.folder.trial_folder(trial),
+                    )
+
+    def _record_finished(self, suggestions: Sequence[Suggestion]) -> None:
+        """Write the rows of the configurations that are done, in order, up to the first that is not."""
+        for suggestion in suggestions[len(self.folder.evaluations) - suggestions[0].trial :]:
+            calls = [self.folder.replicates.get((suggestion.trial, r)) for r in range(self.replicates)]
+            done = [call for call in calls if call is not None]
+            if len(done) < len(calls):
+                return
+            self._record(summarize(suggestion, done, self._clock.ms))
+
+    def _record(self, evaluation: Evaluation) -> None:
+        self.folder.append_evaluation(evaluation)
+        front = self._front.add(evaluation)
+        logger.info("%s", describe(evaluation, front))
+        self.observer.on_evaluation(evaluation, front)
+        self._failures = self._failures + 1 if _is_failure(evaluation) else 0
+        if self._failures >= self.max_consecutive_failures:
+            logger.error("the last %d evaluations failed; the run is stopped", self._failures)
+            raise RepeatedFailureError(
+                f"the last {self._failures} configurations gave no usable result: {evaluation.error}\n"
+                f"  logs: {self.folder.trial_folder(evaluation.trial)}\n"
+                "  hint: Mend the evaluator and give the same command again, or raise "
+                "evaluator.max_consecutive_failures."
+            )
+
+    def _require_result(self, reason: StopReason) -> None:
+        rows = self.folder.evaluations
+        if any(row.is_completed for row in rows):
+            return
+        first = f"; trial 0 {rows[0].state.value}: {rows[0].error}" if rows else ""
+        raise NoValidEvaluationError(
+            f"none of the {len(rows)} evaluations gave a usable result{first}\n"
+            f"  the run ended because {reason.value}\n  logs: {self.folder.path / 'trials'}"
+        )
+
+
+def _is_failure(evaluation: Evaluation) -> bool:
+    return evaluation.state in (State.FAILED, State.TIMEOUT)
+
+
+def _failures_at_end(rows: Sequence[Evaluation]) -> int:
+    """Return how many of the last rows in a row are failures."""
+    return next((n for n, row in enumerate(reversed(rows)) if not _is_failure(row)), len(rows))
