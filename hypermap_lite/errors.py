@@ -39,20 +39,23 @@ class ScenarioError(HypermapLiteError, ValueError):
         What would be right, without a full stop; left out if empty.
     hint
         What to do next, one sentence; left out if empty.
+    file
+        File the path is in; left out if empty.
     """
 
     exit_code = 2
 
-    def __init__(self, path: str, problem: str, *, allowed: str = "", hint: str = "") -> None:
+    def __init__(self, path: str, problem: str, *, allowed: str = "", hint: str = "", file: str = "") -> None:
         self.path = path
         self.problem = problem
         self.allowed = allowed
         self.hint = hint
+        self.file = file
         super().__init__(path, problem)
 
     def __str__(self) -> str:
         """Return the message, one line per fact."""
-        lines = [f"{self.path}: {self.problem}"]
+        lines = [f"{self.file}: {self.path}: {self.problem}" if self.file else f"{self.path}: {self.problem}"]
         if self.allowed:
             lines.append(f"  allowed: {self.allowed}")
         if self.hint:
@@ -61,7 +64,12 @@ class ScenarioError(HypermapLiteError, ValueError):
 
     def below(self, prefix: str) -> ScenarioError:
         """Return the same error with its path, relative so far (``$.std``), put below `prefix`."""
-        return ScenarioError(prefix + self.path.removeprefix("$"), self.problem, allowed=self.allowed, hint=self.hint)
+        path = prefix + self.path.removeprefix("$")
+        return ScenarioError(path, self.problem, allowed=self.allowed, hint=self.hint, file=self.file)
+
+    def within(self, file: str) -> ScenarioError:
+        """Return the same error as one of a file; an error that knows its file keeps it."""
+        return ScenarioError(self.path, self.problem, allowed=self.allowed, hint=self.hint, file=self.file or file)
 
 
 class UsageError(HypermapLiteError, ValueError):
@@ -93,6 +101,13 @@ class EvaluationError(HypermapLiteError, RuntimeError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return a hint that names the closest of the known names, or nothing if none is close."""
-    matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
-    return f"Did you mean '{matches[0]}'?" if matches else ""
+    """Return a hint that names the closest of the known names, or nothing if none is close.
+
+    Close is a slip of the pen (``desgin``), a beginning (``max``) or initials (``ei``).
+    """
+    names = {candidate.casefold(): candidate for candidate in known}
+    wanted = name.casefold()
+    matches = difflib.get_close_matches(wanted, names, n=1, cutoff=0.6)
+    if not matches and len(wanted) > 1:
+        matches = [n for n in names if n.startswith(wanted) or wanted == "".join(word[:1] for word in n.split("_"))]
+    return f"Did you mean '{names[matches[0]]}'?" if matches else ""
