@@ -1,5 +1,6 @@
 """The scenario file: from JSON to one frozen `Scenario`, or one clear error."""
 
+from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.scenario.model import (
     AcquisitionSpec,
     BudgetSpec,
@@ -20,4 +21,5 @@ __all__ = [
     "OutputSpec",
     "ParameterSpec",
     "Scenario",
+    "load_scenario",
 ]

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hypermap_lite.objectives import Objective
+from hypermap_lite.scenario.sources import Layer, origin_of
 from hypermap_lite.typing import Value
 
 
@@ -20,7 +21,7 @@ class ComponentSpec:
 
     type: str
     options: Mapping[str, Any] = field(default_factory=dict)
-    """Keyword arguments of the member's class, without those the user left out."""
+    """Keyword arguments of the member's class; the loader fills in those the user left out."""
 
     path: str = "$"
     """Where it stands in the JSON, for messages."""
@@ -126,5 +127,17 @@ class Scenario:
     canonical: Mapping[str, Any] = field(default_factory=dict)
     """The effective scenario as JSON: inheritance and overrides applied, every default filled in."""
 
-    directory: Path = field(default_factory=Path)
+    directory: Path = field(default_factory=Path, compare=False)
     """Folder of the scenario file: evaluators are imported and run from here."""
+
+    layers: tuple[Layer, ...] = field(default=(), compare=False, repr=False)
+    """The files and overrides it was put together from, the most basic first."""
+
+    @property
+    def has_priors(self) -> bool:
+        """Whether the user says anything about where the optimum lies."""
+        return bool(self.joint_priors) or any(p.prior and p.prior.type != "uniform" for p in self.parameters)
+
+    def origin_of(self, path: str) -> str:
+        """Return the name of the file, or the ``--set``, that wrote the value at a path; empty if there is none."""
+        return origin_of(path, self.layers)

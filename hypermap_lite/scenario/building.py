@@ -1,0 +1,88 @@
+"""From a valid, filled document to the frozen `Scenario`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hypermap_lite.objectives import Goal, Objective
+from hypermap_lite.scenario.model import (
+    AcquisitionSpec,
+    BudgetSpec,
+    ComponentSpec,
+    DesignSpec,
+    EvaluatorSpec,
+    OutputSpec,
+    ParameterSpec,
+    Scenario,
+)
+from hypermap_lite.scenario.sources import Layer
+
+EVALUATOR_KEYS = ("replicates", "timeout_seconds", "workers", "max_consecutive_failures")
+"""Keys of the section that are about the calls, not about the evaluator."""
+
+
+def build_scenario(document: Mapping[str, Any], *, directory: Path, layers: tuple[Layer, ...] = ()) -> Scenario:
+    """Return the scenario of a document that holds every key, as `fill_derived` returns it."""
+    return Scenario(
+        application_name=document["application_name"],
+        description=document["description"],
+        seed=document["seed"],
+        parameters=tuple(_parameter(name, entry) for name, entry in document["input_parameters"].items()),
+        joint_priors=tuple(_component(prior, f"$.priors[{i}]") for i, prior in enumerate(document["priors"])),
+        objectives=tuple(_objective(entry) for entry in document["objectives"]),
+        design=DesignSpec(**document["design_of_experiment"]),
+        budget=BudgetSpec(**document["budget"]),
+        optimizer=_component(document["optimizer"], "$.optimizer"),
+        surrogate=_component(document["surrogate"], "$.surrogate"),
+        acquisition=_acquisition(document["acquisition"]),
+        maximizer=_component(document["maximizer"], "$.maximizer"),
+        evaluator=_evaluator(document["evaluator"]),
+        output=OutputSpec(**document["output"]),
+        canonical=document,
+        directory=directory,
+        layers=layers,
+    )
+
+
+def _component(section: Mapping[str, Any], path: str, *, kind: str = "type") -> ComponentSpec:
+    options = {key: value for key, value in section.items() if key != kind}
+    return ComponentSpec(type=section[kind], options=options, path=path)
+
+
+def _parameter(name: str, entry: Mapping[str, Any]) -> ParameterSpec:
+    path, values, default = f"$.input_parameters.{name}", entry["values"], entry["parameter_default"]
+    if entry["parameter_type"] == "real":
+        values, default = map(float, values), None if default is None else float(default)
+    return ParameterSpec(
+        name=name,
+        parameter_type=entry["parameter_type"],
+        values=tuple(values),
+        scale=entry.get("scale", "linear"),
+        parameter_default=default,
+        prior=_component(entry["prior"], f"{path}.prior") if entry["prior"] else None,
+        description=entry["description"],
+    )
+
+
+def _objective(entry: Mapping[str, Any]) -> Objective:
+    return Objective(name=entry["name"], goal=Goal(entry["goal"]), reference_point=entry["reference_point"])
+
+
+def _acquisition(section: Mapping[str, Any]) -> AcquisitionSpec:
+    path = "$.acquisition"
+    inner = ("scalarization", "weights", "prior_weighting")
+    weighting = _component(section["prior_weighting"], f"{path}.prior_weighting", kind="method")
+    return AcquisitionSpec(
+        function=_component({key: value for key, value in section.items() if key not in inner}, path),
+        scalarization=_component(section["scalarization"], f"{path}.scalarization"),
+        weights=_component(section["weights"], f"{path}.weights"),
+        prior_weighting=None if weighting.type == "none" else weighting,
+    )
+
+
+def _evaluator(section: Mapping[str, Any]) -> EvaluatorSpec:
+    own = {key: value for key, value in section.items() if key not in EVALUATOR_KEYS}
+    component = None if section["type"] == "none" else _component(own, "$.evaluator")
+    return EvaluatorSpec(component=component, **{key: section[key] for key in EVALUATOR_KEYS})

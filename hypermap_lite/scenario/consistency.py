@@ -1,0 +1,111 @@
+"""What must fit together across sections and no schema can say; the parts check themselves when they are built."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Final
+
+from hypermap_lite.errors import ScenarioError, nearest
+from hypermap_lite.scenario.messages import enumerate_names, show
+
+RESERVED_NAMES: Final = frozenset(
+    {"Timestamp", "trial", "phase", "state", "replicates", "prior_weight", "acquisition_value"}
+    | {"suggest_seconds", "evaluate_seconds", "error", "replicate", "seed", "seconds", "more", "feasible"}
+    | {"params_json", "params_file", "trial_dir", "result_file"}
+)
+"""Columns of the CSV files and placeholders of commands, which no parameter or objective may be called."""
+
+
+def check_consistency(document: Mapping[str, Any]) -> None:
+    """Raise a `ScenarioError` at the first contradiction between the sections of a filled document."""
+    _check_names(document["input_parameters"], document["objectives"])
+    for name, parameter in document["input_parameters"].items():
+        _check_default(f"$.input_parameters.{name}", parameter)
+    _check_joint_priors(document["input_parameters"], document["priors"])
+    _check_limits(document)
+    _check_budget(document)
+
+
+def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str, Any]]) -> None:
+    places = [(f"$.input_parameters.{name}", name) for name in parameters]
+    places += [(f"$.objectives[{i}].name", objective["name"]) for i, objective in enumerate(objectives)]
+    counts = Counter(objective["name"] for objective in objectives)
+    standard_errors = {f"{name}_sem" for name in counts}
+    for path, name in places:
+        if counts[name] > 1:
+            raise ScenarioError(path, f"{counts[name]} objectives are called '{name}'", allowed="each name once")
+        if name in counts and name in parameters:
+            problem = f"a parameter and an objective are called '{name}'"
+            raise ScenarioError(path, problem, allowed="each name once", hint="Both are columns of the history.")
+        if name in RESERVED_NAMES or name in standard_errors:
+            problem = f"'{name}' is the name of a column of the result files or a placeholder"
+            raise ScenarioError(path, problem, allowed="any other name", hint=f"Call it '{name}_value', say.")
+
+
+def _check_default(path: str, parameter: Mapping[str, Any]) -> None:
+    default, values = parameter["parameter_default"], parameter["values"]
+    if default is None:
+        return
+    if parameter["parameter_type"] in ("real", "integer"):
+        low, high = values
+        legal, allowed = low <= default <= high or low >= high, f"a number from {low} to {high}"
+    else:
+        legal, allowed = default in values, f"one of {enumerate_names([str(value) for value in values])}"
+    if not legal:
+        hint = nearest(default, values) if isinstance(default, str) else ""
+        problem = f"the default {show(default)} is not a value of the parameter"
+        raise ScenarioError(f"{path}.parameter_default", problem, allowed=allowed, hint=hint)
+
+
+def _check_joint_priors(parameters: Mapping[str, Any], priors: Sequence[Mapping[str, Any]]) -> None:
+    owners = {name: f"$.input_parameters.{name}.prior" for name, p in parameters.items() if p["prior"] is not None}
+    for i, prior in enumerate(priors):
+        for path, name in _names_in(f"$.priors[{i}]", prior):
+            _check_known(path, name, parameters, "parameter")
+            kind = parameters[name]["parameter_type"]
+            if kind not in ("real", "integer"):
+                allowed = "real and integer parameters"
+                raise ScenarioError(path, f"'{name}' is {kind}", allowed=allowed, hint="Give it weights of its own.")
+            if owners.setdefault(name, f"$.priors[{i}]") != f"$.priors[{i}]":
+                problem = f"'{name}' already has a prior at {owners[name]}"
+                raise ScenarioError(path, problem, allowed="one prior per parameter", hint="Drop one of the two.")
+
+
+def _names_in(path: str, prior: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    for k, component in enumerate(prior["components"]):
+        for part in ("mean", "std"):
+            yield from ((f"{path}.components[{k}].{part}.{name}", name) for name in component[part])
+
+
+def _check_limits(document: Mapping[str, Any]) -> None:
+    weights, names = document["acquisition"]["weights"], [o["name"] for o in document["objectives"]]
+    if weights["type"] != "bounding_box":
+        return
+    path = "$.acquisition.weights.limits"
+    for name, (low, high) in weights["limits"].items():
+        _check_known(f"{path}.{name}", name, names, "objective")
+        if low >= high:
+            problem = f"the limits [{low}, {high}] are {'equal' if low == high else 'reversed'}"
+            raise ScenarioError(f"{path}.{name}", problem, allowed="[low, high] with low < high")
+    missing = [name for name in names if name not in weights["limits"]]
+    if missing:
+        raise ScenarioError(path, f"the objective '{missing[0]}' has no limits", allowed="limits for every objective")
+
+
+def _check_known(path: str, name: str, known: Iterable[str], what: str) -> None:
+    if name not in known:
+        raise ScenarioError(
+            path, f"there is no {what} '{name}'", allowed=enumerate_names(list(known)), hint=nearest(name, known)
+        )
+
+
+def _check_budget(document: Mapping[str, Any]) -> None:
+    samples, evaluations = document["design_of_experiment"]["number_of_samples"], document["budget"]["evaluations"]
+    if samples > evaluations:
+        raise ScenarioError(
+            "$.design_of_experiment.number_of_samples",
+            f"a design of {samples} does not fit into a budget of {evaluations} evaluations",
+            allowed=f"1 to {evaluations}",
+            hint="Raise budget.evaluations or shrink the design.",
+        )

@@ -1,0 +1,51 @@
+"""Filling in what a scenario leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from hypermap_lite.scenario.schemas import Schema, child_schema, items_schema, properties_of
+
+SAMPLES_PER_PARAMETER = 2
+"""Points of the default design per parameter."""
+
+MIN_SAMPLES = 6
+"""Points of the smallest default design."""
+
+
+def fill(schema: Schema, value: Any) -> Any:
+    """Return a valid value with the schema's defaults for all keys it leaves out, in the schema's order."""
+    if isinstance(value, Mapping):
+        known = properties_of(schema, value)
+        present = {
+            key: value.get(key, sub.get("default")) for key, sub in known.items() if key in value or "default" in sub
+        }
+        present |= {key: child for key, child in value.items() if key not in known}
+        return {key: fill(child_schema(schema, value, key), child) for key, child in present.items()}
+    if isinstance(value, list):
+        return [fill(items_schema(schema), item) for item in value]
+    if "integer" in schema.get("type", ()) and isinstance(value, float):
+        return int(value)
+    return value
+
+
+def fill_derived(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a filled document with the defaults that follow from other keys; drops what only loading needs."""
+    derived = {key: value for key, value in document.items() if key not in ("preset", "extends", "versions")}
+    design = dict(derived["design_of_experiment"])
+    if design["type"] == "auto":
+        design["type"] = "prior_sampling" if has_priors(document) else "sobol"
+    if design["number_of_samples"] is None:
+        wanted = max(SAMPLES_PER_PARAMETER * len(document["input_parameters"]), MIN_SAMPLES)
+        design["number_of_samples"] = min(wanted, document["budget"]["evaluations"])
+    derived["design_of_experiment"] = design
+    directory = document["output"]["directory"] or f"outputs/{document['application_name']}"
+    derived["output"] = {**document["output"], "directory": directory}
+    return derived
+
+
+def has_priors(document: Mapping[str, Any]) -> bool:
+    """Tell whether a document says anything about where the optimum lies."""
+    own = [parameter.get("prior") for parameter in document["input_parameters"].values()]
+    return bool(document.get("priors")) or any(prior and prior["type"] != "uniform" for prior in own)

@@ -1,0 +1,153 @@
+"""Warnings about scenarios that are valid and probably not meant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TypeAlias
+
+from hypermap_lite.scenario.model import ParameterSpec, Scenario
+
+Part: TypeAlias = tuple[Mapping[str, float], Mapping[str, float], float]
+"""A Gaussian's means and standard deviations by parameter, and its weight."""
+
+MASS_OUTSIDE = 0.95
+"""A prior with more of its mass than this outside the bounds is worth a warning."""
+
+DECADES = 3
+"""A linear parameter that spans at least so many decades is worth a warning."""
+
+
+def lint(scenario: Scenario) -> list[str]:
+    """Return warnings, one sentence or two each, with the place in the JSON in front."""
+    warnings = [
+        *_levels(scenario),
+        *_linear_decades(scenario),
+        *_partial_defaults(scenario),
+        *_priors_outside(scenario),
+        *_unused_priors(scenario),
+        *_reference_points(scenario),
+        *_budget(scenario),
+        *_workers(scenario),
+    ]
+    return [f"{path}: {text}" for path, text in warnings]
+
+
+def mass_inside(parameter: ParameterSpec, mean: float, std: float) -> float:
+    """Return how much of a Gaussian, not truncated, lies within a numeric parameter's bounds."""
+    low, high = float(parameter.values[0]), float(parameter.values[1])
+    if parameter.parameter_type == "integer":
+        low, high = low - 0.5, high + 0.5
+    if parameter.scale == "log":
+        low, high, mean = math.log10(low), math.log10(high), math.log10(mean)
+    a, b = (low - mean) / (std * math.sqrt(2)), (high - mean) / (std * math.sqrt(2))
+    if a > 0:  # both in the upper tail, where 1 - erf would cancel
+        return (math.erfc(a) - math.erfc(b)) / 2
+    return (math.erfc(-b) - math.erfc(-a)) / 2
+
+
+def _levels(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    for parameter in scenario.parameters:
+        numbers = _numbers(parameter)
+        if parameter.parameter_type not in ("categorical", "ordinal") or numbers is None:
+            continue
+        path = f"$.input_parameters.{parameter.name}"
+        steps = [b - a for a, b in zip(sorted(numbers), sorted(numbers)[1:], strict=False)]
+        if all(step == 1 and numbers[0].is_integer() for step in steps):
+            low, high = f"{min(numbers):g}", f"{max(numbers):g}"
+            advice = f'declare it "integer" with values [{low}, {high}]'
+            yield path, f"the levels are consecutive integers; {advice}, so that the model knows their distances."
+        elif parameter.parameter_type == "categorical":
+            yield path, 'all categories are numbers; declare it "ordinal", so that the model knows their order.'
+
+
+def _numbers(parameter: ParameterSpec) -> list[float] | None:
+    try:
+        return [float(value) for value in parameter.values]
+    except ValueError:
+        return None
+
+
+def _linear_decades(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    for parameter in scenario.parameters:
+        if parameter.parameter_type in ("real", "integer") and parameter.scale == "linear":
+            low, high = float(parameter.values[0]), float(parameter.values[1])
+            if low > 0 and high / low >= 10**DECADES:
+                text = f'it spans {math.log10(high / low):.1f} decades; "scale": "log" searches them evenly.'
+                yield f"$.input_parameters.{parameter.name}", text
+
+
+def _partial_defaults(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    without = [p.name for p in scenario.parameters if p.parameter_default is None]
+    if without and len(without) < len(scenario.parameters):
+        text = f"the default configuration is not evaluated, since '{without[0]}' has no parameter_default."
+        yield f"$.input_parameters.{without[0]}", text
+
+
+def _priors_outside(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    numeric = {p.name: p for p in scenario.parameters if p.parameter_type in ("real", "integer")}
+    for path, parts in _gaussians(scenario):
+        outside = 1 - _inside(numeric, parts)
+        if outside > MASS_OUTSIDE:
+            yield path, f"{_percent(outside)} of its mass lies outside the bounds; only the tail inside counts."
+
+
+def _gaussians(scenario: Scenario) -> Iterator[tuple[str, list[Part]]]:
+    """Yield the path and the weighted Gaussians of each prior that is made of them."""
+    for parameter in scenario.parameters:
+        name, prior = parameter.name, parameter.prior
+        if prior and prior.type == "gaussian":
+            yield prior.path, [({name: prior.options["mean"]}, {name: prior.options["std"]}, 1.0)]
+        if prior and prior.type == "mixture":
+            components = prior.options["components"]
+            yield prior.path, [({name: c["mean"]}, {name: c["std"]}, c["weight"]) for c in components]
+    for joint in scenario.joint_priors:
+        yield joint.path, [(c["mean"], c["std"], c["weight"]) for c in joint.options["components"]]
+
+
+def _inside(numeric: Mapping[str, ParameterSpec], parts: list[Part]) -> float:
+    masses = [w * math.prod(mass_inside(numeric[n], mean[n], std[n]) for n in mean) for mean, std, w in parts]
+    return sum(masses) / sum(weight for _, _, weight in parts)
+
+
+def _percent(share: float) -> str:
+    return "more than 99.9 %" if share > 0.999 else f"{100 * share:.1f} %"
+
+
+def _unused_priors(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    uses = scenario.design.type == "prior_sampling" or scenario.optimizer.type == "prior_sampling"
+    weighted = scenario.optimizer.type == "bayesian" and scenario.acquisition.prior_weighting is not None
+    if scenario.has_priors and not uses and not weighted:
+        yield (
+            "$.optimizer",
+            "the priors change nothing: neither the design, the optimizer nor the acquisition uses them.",
+        )
+
+
+def _reference_points(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    for i, objective in enumerate(scenario.objectives):
+        if len(scenario.objectives) > 1 and objective.reference_point is None:
+            text = f"'{objective.name}' has no reference_point; the hypervolume is then not comparable between runs."
+            yield f"$.objectives[{i}]", text
+
+
+def _budget(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    evaluations = scenario.budget.evaluations
+    if scenario.optimizer.type == "bayesian" and scenario.design.number_of_samples >= evaluations:
+        yield "$.budget.evaluations", f"the design takes all {evaluations} evaluations; no model is ever fitted."
+    size = math.prod(_n_levels(parameter) for parameter in scenario.parameters)
+    if size < evaluations:
+        yield "$.budget.evaluations", f"there are only {size:.0f} configurations; the run ends after them."
+
+
+def _n_levels(parameter: ParameterSpec) -> float:
+    if parameter.parameter_type == "integer":
+        return float(parameter.values[1]) - float(parameter.values[0]) + 1
+    return math.inf if parameter.parameter_type == "real" else len(parameter.values)
+
+
+def _workers(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    calls = scenario.budget.batch_size * scenario.evaluator.replicates
+    if scenario.evaluator.workers > calls:
+        text = f"only {calls} calls can run at once (batch_size x replicates); the other workers never get one."
+        yield "$.evaluator.workers", text

@@ -1,0 +1,90 @@
+"""From a scenario file, or the same as a Python mapping, to one frozen `Scenario`, or one clear error."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.scenario.building import build_scenario
+from hypermap_lite.scenario.consistency import check_consistency
+from hypermap_lite.scenario.defaults import fill, fill_derived, has_priors
+from hypermap_lite.scenario.merging import apply_override, merge, merge_layers, read_layers
+from hypermap_lite.scenario.messages import check_document
+from hypermap_lite.scenario.model import Scenario
+from hypermap_lite.scenario.presets import PRESETS
+from hypermap_lite.scenario.reading import parse_json
+from hypermap_lite.scenario.schemas import root_schema
+from hypermap_lite.scenario.sources import Layer, origin_of
+
+
+def load_scenario(source: str | Path | Mapping[str, Any], *, overrides: Sequence[str] = ()) -> Scenario:
+    """Read, merge, check and complete a scenario.
+
+    Parameters
+    ----------
+    source
+        Path of a JSON file, or its content as a mapping; then files it extends are relative to the working directory.
+    overrides
+        Changes on top, as in ``budget.evaluations=30``: a dotted path and a value in JSON, or else a string.
+
+    Raises
+    ------
+    ScenarioError
+        If anything is wrong with it; the message names the file, the place in it, and what would be right.
+    """
+    if isinstance(source, Mapping):
+        directory, layers = Path(), _layers_of(source)
+    else:
+        directory, layers = Path(source).parent, read_layers(Path(source))
+    document = merge_layers(layers)
+    for override in overrides:
+        document, layer = apply_override(document, override)
+        layers.append(layer)
+    try:
+        complete = complete_document(document)
+    except ScenarioError as error:
+        raise error.within(origin_of(error.path, layers)) from None
+    return build_scenario(complete, directory=directory, layers=tuple(layers))
+
+
+def complete_document(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a merged document with preset and defaults filled in, checked as far as JSON goes.
+
+    Raises
+    ------
+    ScenarioError
+        If the document breaks the schemas, or its sections contradict each other.
+    """
+    check_document(document)
+    if document.get("preset"):
+        preset = PRESETS[document["preset"]](has_priors=has_priors(document))
+        document = merge(root_schema(), preset, document)
+    complete = fill_derived(fill(root_schema(), document))
+    check_consistency(complete)
+    complete["input_parameters"] = {n: _rising(p) for n, p in complete["input_parameters"].items()}
+    return complete
+
+
+def _layers_of(source: Mapping[str, Any]) -> list[Layer]:
+    try:
+        document = parse_json(json.dumps(source), "")
+    except TypeError as error:
+        raise ScenarioError("$", f"this is not JSON: {error}", allowed="JSON values only") from None
+    if not document.get("extends"):
+        return [Layer("", document)]
+    bases = document["extends"] if isinstance(document["extends"], list) else [document["extends"]]
+    return [*(layer for base in bases for layer in read_layers(Path(base))), Layer("", document)]
+
+
+def _rising(parameter: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return an ordinal parameter with its levels, and their weights, in rising order."""
+    values, prior = parameter["values"], parameter["prior"]
+    if parameter["parameter_type"] != "ordinal" or values == sorted(values):
+        return parameter
+    if prior and prior["type"] == "weights" and len(prior["weights"]) == len(values):
+        weights = [weight for _, weight in sorted(zip(values, prior["weights"], strict=True))]
+        prior = {**prior, "weights": weights}
+    return {**parameter, "values": sorted(values), "prior": prior}

@@ -1,0 +1,30 @@
+"""Named sets of method defaults; the scenario's own keys win over them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+
+def paper(*, has_priors: bool) -> Mapping[str, Any]:
+    """Return the method of the paper, to the letter [1]_.
+
+    References
+    ----------
+    .. [1] Mayr et al. Learning Skill-based Industrial Robot Tasks with User Priors. CASE 2022.
+    """
+    return {
+        "design_of_experiment": {"type": "prior_sampling" if has_priors else "random_sampling"},
+        "optimizer": {"type": "bayesian"},
+        "surrogate": {"type": "gaussian_process"},
+        "acquisition": {
+            "type": "noisy_expected_improvement",
+            "scalarization": {"type": "linear"},
+            "weights": {"type": "dirichlet", "alpha": 1.0},
+            "prior_weighting": {"method": "pibo", "floor": 1e-6},
+        },
+    }
+
+
+PRESETS: Final[Mapping[str, Callable[..., Mapping[str, Any]]]] = {"paper": paper}
+"""JSON name of each preset; called with ``has_priors``, it returns the part of a scenario it stands for."""

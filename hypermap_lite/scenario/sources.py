@@ -1,0 +1,56 @@
+"""Where each part of a scenario was written: the files and overrides it was put together from."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+Keys: TypeAlias = tuple[str | int, ...]
+"""A place in a JSON document: object keys and list indices from the top."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """One file, or one ``--set``, of those that were merged."""
+
+    name: str
+    """What messages call it; empty for a scenario given as a Python mapping."""
+
+    document: Mapping[Any, Any]
+    """Its content as written."""
+
+
+def origin_of(path: str, layers: Sequence[Layer]) -> str:
+    """Return the name of the layer that wrote the value at a path, or the nearest value above it."""
+    keys = keys_of(path)
+    for depth in range(len(keys), 0, -1):
+        for layer in reversed(layers):
+            if _has(layer.document, keys[:depth]):
+                return layer.name
+    files = [layer.name for layer in layers if not layer.name.startswith("--set")]
+    return files[-1] if files else ""
+
+
+def keys_of(path: str) -> Keys:
+    """Return the keys of a path: ``$.objectives[0].goal`` is ``("objectives", 0, "goal")``."""
+    return tuple(int(index) if index else key for key, index in re.findall(r"\.([^.\[]+)|\[(\d+)\]", path))
+
+
+def path_of(keys: Sequence[str | int]) -> str:
+    """Return the path of some keys, the inverse of `keys_of`."""
+    return "$" + "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in keys)
+
+
+def _has(document: Any, keys: Keys) -> bool:
+    for key in keys:
+        inside = (
+            key in document
+            if isinstance(document, Mapping)
+            else isinstance(document, list) and key in range(len(document))
+        )
+        if not inside:
+            return False
+        document = document[key]
+    return True

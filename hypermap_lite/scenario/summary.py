@@ -1,0 +1,127 @@
+"""The effective scenario as a page of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from hypermap_lite.scenario.model import ComponentSpec, ParameterSpec, Scenario
+
+INDENT = " " * 12
+"""Width of the column of headings."""
+
+
+def summarize(scenario: Scenario) -> str:
+    """Return a page that says what will be run: parameters, objectives, method and why, budget, evaluator, output."""
+    sections = {
+        "experiment": _experiment(scenario),
+        "parameters": _parameters(scenario.parameters),
+        "priors": [_component(prior) for prior in scenario.joint_priors],
+        "objectives": _objectives(scenario),
+        "method": _method(scenario),
+        "budget": [_budget(scenario)],
+        "evaluator": [_evaluator(scenario)],
+        "output": [scenario.output.directory],
+    }
+    return "\n".join(f"{heading:<12}" + f"\n{INDENT}".join(lines) for heading, lines in sections.items() if lines)
+
+
+def _experiment(scenario: Scenario) -> list[str]:
+    return [
+        f"{scenario.application_name}, seed {scenario.seed}",
+        *([scenario.description] * bool(scenario.description)),
+    ]
+
+
+def _parameters(parameters: Sequence[ParameterSpec]) -> list[str]:
+    rows = [("name", "type", "values", "scale", "default", "prior")]
+    for p in parameters:
+        numeric = p.parameter_type in ("real", "integer")
+        values = f"{p.values[0]:g} to {p.values[1]:g}" if numeric else _shorten(", ".join(map(str, p.values)))
+        default = "-" if p.parameter_default is None else str(p.parameter_default)
+        prior = _component(p.prior) if p.prior else "-"
+        rows.append((p.name, p.parameter_type, values, p.scale if numeric else "-", default, prior))
+    return _table(rows)
+
+
+def _objectives(scenario: Scenario) -> list[str]:
+    rows = [("name", "goal", "reference point")]
+    points = ["-" if o.reference_point is None else f"{o.reference_point:g}" for o in scenario.objectives]
+    rows += [(o.name, o.goal.value, point) for o, point in zip(scenario.objectives, points, strict=True)]
+    return _table(rows)
+
+
+def _method(scenario: Scenario) -> list[str]:
+    """Say which evaluations are chosen how, and what of the scenario decides that."""
+    n, total = scenario.design.number_of_samples, scenario.budget.evaluations
+    lines = [f"evaluations 1 to {n}: {scenario.design.type}"]
+    if scenario.optimizer.type != "bayesian":
+        return [*lines, f"evaluations {n + 1} to {total}: {scenario.optimizer.type}"] if n < total else lines
+    acquisition = scenario.acquisition
+    if n < total:
+        chosen = f"{_component(acquisition.function)} on a {_component(scenario.surrogate)}"
+        lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
+    m = len(scenario.objectives)
+    if m > 1:
+        weights = f"{_component(acquisition.scalarization)} with weights from {_component(acquisition.weights)}"
+        lines.append(f"{m} objectives: {weights}")
+    else:
+        lines.append("one objective: no scalarization")
+    return [*lines, _prior_use(scenario)]
+
+
+def _prior_use(scenario: Scenario) -> str:
+    weighting = scenario.acquisition.prior_weighting
+    if not scenario.has_priors:
+        return "no priors: nothing to weight the acquisition with"
+    if weighting is None:
+        return "priors: not in the acquisition (prior_weighting is none)"
+    options = dict(weighting.options)
+    if options.get("beta") is None:
+        options["beta"] = 0.1 * (scenario.budget.evaluations - scenario.design.number_of_samples)
+    return f"priors: acquisition weighted by {weighting.type}{_options(options)}"
+
+
+def _budget(scenario: Scenario) -> str:
+    budget = scenario.budget
+    batches = "one at a time" if budget.batch_size == 1 else f"{budget.batch_size} at a time"
+    limit = "" if budget.minutes is None else f", at most {budget.minutes:g} min"
+    return f"{budget.evaluations} evaluations, {batches}{limit}"
+
+
+def _evaluator(scenario: Scenario) -> str:
+    evaluator = scenario.evaluator
+    if evaluator.component is None:
+        return "none: driven by ask and tell, or a function passed from Python"
+    options = evaluator.component.options
+    target = options.get("function") or " ".join(options.get("command", ()))
+    limit = "no time limit" if evaluator.timeout_seconds is None else f"{evaluator.timeout_seconds:g} s each"
+    calls = f"{evaluator.replicates} per configuration, {evaluator.workers} at a time, {limit}"
+    return f"{evaluator.component.type} {_shorten(str(target), 60)}; calls: {calls}"
+
+
+def _component(spec: ComponentSpec) -> str:
+    return spec.type + _options(spec.options)
+
+
+def _options(options: Mapping[str, Any]) -> str:
+    given = [f"{key}={_value(value)}" for key, value in options.items() if value is not None]
+    return f"({', '.join(given)})" if given else ""
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key}: {_value(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _shorten(text: str, length: int = 40) -> str:
+    return text if len(text) <= length else text[: length - 4] + " ..."
+
+
+def _table(rows: Iterable[Sequence[str]]) -> list[str]:
+    rows = list(rows)
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]

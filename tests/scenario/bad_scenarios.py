@@ -1,0 +1,288 @@
+"""Scenarios that must not run, each with what its message has to say; used for the loader and the command line."""
+
+from __future__ import annotations
+
+import copy
+import json
+from typing import Any, NamedTuple
+
+GOOD: dict[str, Any] = {
+    "application_name": "demo",
+    "input_parameters": {
+        "x": {"parameter_type": "real", "values": [-5, 10]},
+        "n": {"parameter_type": "integer", "values": [1, 8]},
+        "size": {"parameter_type": "ordinal", "values": [16, 32, 64]},
+        "mode": {"parameter_type": "categorical", "values": ["fast", "safe"]},
+    },
+    "objectives": [{"name": "cost"}, {"name": "gain", "goal": "maximize"}],
+}
+
+
+class Bad(NamedTuple):
+    """One mistake and its message."""
+
+    text: str
+    says: tuple[str, ...]
+    """Fragments of the message: the path, the value, what is allowed, the nearest name."""
+
+    when_loaded: bool = True
+    """Whether loading alone finds it; else building the parts does."""
+
+
+def changed(path: str, value: Any) -> str:
+    """Return the good scenario as text with one value set; the last key is made if need be."""
+    document = copy.deepcopy(GOOD)
+    *above, last = [int(key) if key.isdigit() else key for key in path.split(".")]
+    place: Any = document
+    for key in above:
+        place = place.setdefault(key, {}) if isinstance(key, str) else place[key]
+    place[last] = value
+    return json.dumps(document)
+
+
+def without(key: str) -> str:
+    """Return the good scenario as text without one section."""
+    return json.dumps({name: value for name, value in GOOD.items() if name != key})
+
+
+def parameter(**entry: Any) -> str:
+    """Return the good scenario as text with one more parameter `p`."""
+    return changed("input_parameters.p", entry)
+
+
+def prior(name: str, **entry: Any) -> str:
+    """Return the good scenario as text with a prior on one of its parameters."""
+    return changed(f"input_parameters.{name}.prior", entry)
+
+
+def joint(mean: dict[str, Any], std: dict[str, Any]) -> str:
+    """Return the good scenario as text with a joint prior of one component."""
+    return changed("priors", [{"type": "mixture", "components": [{"mean": mean, "std": std}]}])
+
+
+REPEATED_OBJECTIVE = [{"name": "cost"}, {"name": "cost"}]
+P = "$.input_parameters.p"
+
+BAD: dict[str, Bad] = {
+    # the file itself
+    "broken_json": Bad('{\n  "seed": 1\n  "x": 2\n}', (":3:3", "line 3, column 3", '"x": 2', "comma before it")),
+    "trailing_comma": Bad('{"seed": 1,}', ("line 1, column 12", "Remove the comma")),
+    "single_quotes": Bad("{'seed': 1}", ("line 1, column 2", "double quotes")),
+    "comment": Bad('{\n  // why\n  "seed": 1}', ("line 2, column 3", "no comments")),
+    "python_word": Bad('{"seed": None}', ("line 1, column 10", "Write null instead of None")),
+    "cut_off": Bad('{"seed": 1', ("line 1, column 11", "broken JSON")),
+    "empty_file": Bad(" \n", ("the file is empty", "{...}")),
+    "top_level_list": Bad("[1]", ("$: the file holds a list", "a JSON object")),
+    "not_a_number": Bad(changed("seed", float("nan")), ("$.seed", "nan", "finite")),
+    "infinite_bound": Bad(
+        '{"input_parameters": {"x": {"values": [0, 1e999]}}}', ("$.input_parameters.x.values[1]", "inf")
+    ),
+    "repeated_key": Bad('{"seed": 1, "seed": 2}', ("$:", "'seed' stands twice", "each key once")),
+    "repeated_parameter": Bad(
+        '{"input_parameters": {"x": {}, "y": {}, "x": {}}}', ("$.input_parameters", "'x' stands twice", "Rename")
+    ),
+    # keys and sections
+    "unknown_key": Bad(changed("sede", 3), ("$.sede", "unknown key, given 3", "objectives", "'seed'")),
+    "unknown_nested_key": Bad(
+        changed("budget", {"evaluation": 9}), ("$.budget.evaluation", "given 9", "'evaluations'")
+    ),
+    "misplaced_key": Bad(changed("replicates", 7), ("$.replicates", "given 7", "belongs to 'evaluator'")),
+    "option_of_another_type": Bad(
+        changed("surrogate", {"type": "gaussian_process", "max_features": 0.3}),
+        ("$.surrogate.max_features", "allowed: type, noise", "goes with type random_forest"),
+    ),
+    "misspelt_option": Bad(
+        changed("surrogate", {"type": "random_forest", "number_of_tree": 3}),
+        ("$.surrogate.number_of_tree", "given 3", "'number_of_trees'"),
+    ),
+    "missing_objectives": Bad(without("objectives"), ("$:", "'objectives' is missing", "a list")),
+    "missing_parameters": Bad(without("input_parameters"), ("$:", "'input_parameters' is missing")),
+    "no_objectives": Bad(changed("objectives", []), ("$.objectives", "[] has 0 items", "not empty")),
+    "no_parameters": Bad(changed("input_parameters", {}), ("$.input_parameters", "{} is empty", "at least one")),
+    "section_of_wrong_type": Bad(changed("budget", 30), ("$.budget", "30 is a number", "an object with evaluations")),
+    "unknown_preset": Bad(changed("preset", "papper"), ("$.preset", '"papper"', "paper, null", "'paper'")),
+    "seed_in_quotes": Bad(
+        changed("seed", "3"), ("$.seed", '"3" is a string', "an integer >= 0", "Write 3 without quotes")
+    ),
+    "negative_seed": Bad(changed("seed", -1), ("$.seed", "-1 is too small", ">= 0")),
+    "name_with_a_slash": Bad(changed("application_name", "a/b"), ("$.application_name", '"a/b"', "letters, digits")),
+    # parameters
+    "unknown_parameter_type": Bad(
+        parameter(parameter_type="int", values=[0, 1]),
+        (f"{P}.parameter_type", '"int"', "real, integer, ordinal, categorical", "'integer'"),
+    ),
+    "missing_parameter_type": Bad(parameter(values=[0, 1]), (f"{P}:", "'parameter_type' is missing", "real, integer")),
+    "missing_values": Bad(parameter(parameter_type="real"), (f"{P}:", "'values' is missing", "[-5, 10]")),
+    "parameter_name": Bad(
+        changed("input_parameters.my x", {"parameter_type": "real", "values": [0, 1]}),
+        ("$.input_parameters", '"my x"', "letters, digits, _ and -"),
+    ),
+    "reversed_bounds": Bad(
+        parameter(parameter_type="real", values=[5, 1]),
+        (f"{P}.values", "[5.0, 1.0] are reversed", "low < high", "Swap"),
+        False,
+    ),
+    "equal_bounds": Bad(
+        parameter(parameter_type="integer", values=[3, 3]), (f"{P}.values", "[3, 3] are equal", "low < high"), False
+    ),
+    "bound_of_wrong_type": Bad(
+        parameter(parameter_type="real", values=[0, "1"]),
+        (f"{P}.values[1]", '"1" is a string', "a number", "Write 1 without"),
+    ),
+    "bound_not_whole": Bad(
+        parameter(parameter_type="integer", values=[0, 1.5]), (f"{P}.values[1]", "1.5 is not whole", "an integer")
+    ),
+    "three_bounds": Bad(
+        parameter(parameter_type="real", values=[0, 1, 2]), (f"{P}.values", "3 items", "a list of 2 numbers")
+    ),
+    "log_scale_from_zero": Bad(
+        parameter(parameter_type="real", values=[0, 1], scale="log"), (f"{P}.values[0]", "not positive", "> 0"), False
+    ),
+    "log_scale_of_a_categorical": Bad(
+        parameter(parameter_type="categorical", values=["a", "b"], scale="log"),
+        (f"{P}.scale", "unknown key", "goes with parameter_type real or integer"),
+    ),
+    "empty_categories": Bad(
+        parameter(parameter_type="categorical", values=[]), (f"{P}.values", "0 items", "at least 2 different strings")
+    ),
+    "duplicate_categories": Bad(
+        parameter(parameter_type="categorical", values=["a", "b", "a"]),
+        (f"{P}.values", '"a" stands twice', "different"),
+    ),
+    "category_not_a_string": Bad(
+        parameter(parameter_type="categorical", values=[True, False]),
+        (f"{P}.values[0]", "true is a truth value", '"true"'),
+    ),
+    "duplicate_levels": Bad(parameter(parameter_type="ordinal", values=[1, 2, 1]), (f"{P}.values", "1 stands twice")),
+    "default_outside_bounds": Bad(
+        changed("input_parameters.x.parameter_default", 11),
+        ("$.input_parameters.x.parameter_default", "11", "a number from -5 to 10"),
+    ),
+    "default_not_a_level": Bad(
+        changed("input_parameters.mode.parameter_default", "save"),
+        ("$.input_parameters.mode.parameter_default", '"save"', "one of fast, safe", "'safe'"),
+    ),
+    # priors
+    "zero_std": Bad(
+        prior("x", type="gaussian", mean=0, std=0), ("$.input_parameters.x.prior.std", "0 is too small", "a number > 0")
+    ),
+    "negative_std": Bad(
+        prior("x", type="mixture", components=[{"mean": 0, "std": -1}]),
+        ("$.input_parameters.x.prior.components[0].std", "-1 is too small", "> 0"),
+    ),
+    "missing_std": Bad(prior("x", type="gaussian", mean=0), ("$.input_parameters.x.prior:", "'std' is missing", "> 0")),
+    "unknown_prior": Bad(
+        prior("x", type="normal", mean=0, std=1), ("$.input_parameters.x.prior.type", '"normal"', "gaussian, mixture")
+    ),
+    "weights_of_wrong_length": Bad(
+        prior("size", type="weights", weights=[1, 2]),
+        ("$.input_parameters.size.prior.weights", "2 weights for the 3 levels", "3 numbers"),
+        False,
+    ),
+    "negative_weight": Bad(
+        prior("mode", type="weights", weights=[1, -2]),
+        ("$.input_parameters.mode.prior.weights[1]", "-2 is too small", ">= 0"),
+    ),
+    "all_weights_zero": Bad(
+        prior("mode", type="weights", weights=[0, 0]), ("$.input_parameters.mode.prior.weights", "zero", "> 0"), False
+    ),
+    "gaussian_on_a_categorical": Bad(
+        prior("mode", type="gaussian", mean=0, std=1), ("$.input_parameters.mode.prior", "'mode'", "weights"), False
+    ),
+    "weights_on_a_real": Bad(
+        prior("x", type="weights", weights=[1, 2]), ("$.input_parameters.x.prior", "'x'", "gaussian"), False
+    ),
+    "beta_without_shape": Bad(
+        prior("x", type="beta"), ("$.input_parameters.x.prior", "shape", "alpha and beta"), False
+    ),
+    "prior_for_unknown_parameter": Bad(
+        joint({"x": 0, "m": 1}, {"x": 1, "m": 1}),
+        ("$.priors[0].components[0].mean.m", "no parameter 'm'", "x, n, size, mode"),
+    ),
+    "joint_prior_of_a_categorical": Bad(
+        joint({"mode": 0}, {"mode": 1}),
+        ("$.priors[0].components[0].mean.mode", "'mode' is categorical", "real and integer"),
+    ),
+    "joint_prior_names_differ": Bad(
+        joint({"x": 0, "n": 1}, {"x": 1}), ("$.priors[0].components[0].std", "x", "all of x, n"), False
+    ),
+    # objectives
+    "unknown_goal": Bad(
+        changed("objectives.0.goal", "max"),
+        ("$.objectives[0].goal", 'unknown goal "max"', "minimize, maximize", "'maximize'"),
+    ),
+    "repeated_objective": Bad(
+        changed("objectives", REPEATED_OBJECTIVE), ("$.objectives[0].name", "2 objectives", "'cost'", "each name once")
+    ),
+    "objective_named_as_parameter": Bad(
+        changed("objectives.0.name", "x"), ("$.input_parameters.x", "'x'", "each name once")
+    ),
+    "reserved_name": Bad(changed("objectives.0.name", "trial"), ("$.objectives[0].name", "'trial'", "any other name")),
+    "objective_a_string": Bad(
+        changed("objectives", ["cost"]),
+        ("$.objectives[0]", '"cost" is a string', "an object with name", '{"name": "cost"}'),
+    ),
+    "objectives_a_string": Bad(changed("objectives", "cost"), ("$.objectives", '"cost" is a string', 'Write ["cost"]')),
+    # method
+    "unknown_acquisition": Bad(
+        changed("acquisition", "ei"), ("$.acquisition.type", '"ei"', "thompson_sampling", "'expected_improvement'")
+    ),
+    "unknown_surrogate": Bad(changed("surrogate", {"type": "rf"}), ("$.surrogate.type", '"rf"', "'random_forest'")),
+    "share_above_one": Bad(
+        changed("surrogate", {"type": "random_forest", "max_features": 2}),
+        ("$.surrogate.max_features", "2 is too large", "> 0 and <= 1"),
+    ),
+    "limits_for_unknown_objective": Bad(
+        changed("acquisition", {"weights": {"type": "bounding_box", "limits": {"costs": [0, 1], "gain": [0, 1]}}}),
+        ("$.acquisition.weights.limits.costs", "no objective 'costs'", "cost, gain", "'cost'"),
+    ),
+    "reversed_limits": Bad(
+        changed("acquisition", {"weights": {"type": "bounding_box", "limits": {"cost": [1, 0], "gain": [0, 1]}}}),
+        ("$.acquisition.weights.limits.cost", "reversed", "low < high"),
+    ),
+    "missing_limits": Bad(
+        changed("acquisition", {"weights": {"type": "bounding_box", "limits": {"cost": [0, 1]}}}),
+        ("$.acquisition.weights.limits", "'gain' has no limits", "every objective"),
+    ),
+    # budget and evaluator
+    "budget_smaller_than_design": Bad(
+        changed("budget", {"evaluations": 5})[:-1] + ', "design_of_experiment": {"number_of_samples": 8}}',
+        ("$.design_of_experiment.number_of_samples", "design of 8", "budget of 5", "1 to 5"),
+    ),
+    "zero_batch_size": Bad(changed("budget", {"batch_size": 0}), ("$.budget.batch_size", "0 is too small", ">= 1")),
+    "unknown_evaluator": Bad(changed("evaluator", "shell"), ("$.evaluator.type", '"shell"', "python, command, none")),
+    "function_without_module": Bad(
+        changed("evaluator", {"type": "python", "function": "evaluate"}),
+        ("$.evaluator.function", '"evaluate"', "module:name"),
+    ),
+    "missing_function": Bad(
+        changed("evaluator", {"type": "python"}),
+        ("$.evaluator:", "'function' is missing", "module:name", "branin:evaluate"),
+    ),
+    "module_does_not_import": Bad(
+        changed("evaluator", {"type": "python", "function": "no_such_module_here:evaluate"}),
+        ("$.evaluator.function", "No module named 'no_such_module_here'"),
+        False,
+    ),
+    "command_as_a_string": Bad(
+        changed("evaluator", {"type": "command", "command": "simulate {x}"}),
+        ("$.evaluator.command", "is a string", "a list of strings", 'Write ["simulate {x}"]'),
+    ),
+    "command_not_found": Bad(
+        changed("evaluator", {"type": "command", "command": ["no-such-program-here", "{x}"]}),
+        ("$.evaluator.command", "no-such-program-here"),
+        False,
+    ),
+    "unknown_placeholder": Bad(
+        changed("evaluator", {"type": "command", "command": ["echo", "{mod}"]}),
+        ("$.evaluator.command", "mod", "'mode'"),
+        False,
+    ),
+    "negative_time_limit": Bad(
+        changed("evaluator", {"timeout_seconds": -1}), ("$.evaluator.timeout_seconds", "-1", "a number > 0 or null")
+    ),
+    # inheritance
+    "extends_itself": Bad(changed("extends", "bad.json"), ("$.extends", "bad.json -> bad.json")),
+    "extends_nothing": Bad(changed("extends", "base.jsn"), ("$.extends", '"base.jsn"', "relative to")),
+    "extends_a_number": Bad(changed("extends", 3), ("$.extends", "3", "a file name or a list")),
+}

@@ -1,0 +1,153 @@
+"""Tests for loader.py."""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.model import ComponentSpec
+from tests.scenario.bad_scenarios import BAD, GOOD, Bad
+
+FOUND_BY_LOADING = {name: bad for name, bad in BAD.items() if bad.when_loaded}
+
+
+def with_sections(**sections: Any) -> dict[str, Any]:
+    return copy.deepcopy(GOOD) | sections
+
+
+@pytest.mark.parametrize("bad", FOUND_BY_LOADING.values(), ids=FOUND_BY_LOADING.keys())
+def test_a_mistake_is_named_with_place_value_and_remedy(bad: Bad, tmp_path: Path) -> None:
+    file = tmp_path / "bad.json"
+    file.write_text(bad.text)
+    with pytest.raises(ScenarioError, match=r"bad\.json") as caught:
+        load_scenario(file)
+    message = str(caught.value)
+    assert [part for part in bad.says if part not in message] == [], message
+    assert len(message.splitlines()) <= 4
+
+
+@pytest.mark.parametrize("bad", [bad for bad in BAD.values() if not bad.when_loaded])
+def test_what_the_parts_check_themselves_loads(bad: Bad, tmp_path: Path) -> None:
+    file = tmp_path / "bad.json"
+    file.write_text(bad.text)
+    assert load_scenario(file).application_name == "demo"
+
+
+def test_defaults_fill_a_minimal_scenario() -> None:
+    scenario = load_scenario(GOOD)
+    assert scenario.budget.evaluations == 50
+    assert scenario.design.type == "sobol"
+    assert scenario.design.number_of_samples == 8
+    assert scenario.surrogate == ComponentSpec(type="gaussian_process", options={"noise": True}, path="$.surrogate")
+    assert scenario.evaluator.component is None
+    assert scenario.output.directory == "outputs/demo"
+
+
+def test_a_prior_makes_the_default_design_sample_from_it() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+    assert load_scenario(with_sections(priors=priors)).design.type == "prior_sampling"
+
+
+def test_a_small_budget_shrinks_the_default_design() -> None:
+    assert load_scenario(with_sections(budget={"evaluations": 3})).design.number_of_samples == 3
+
+
+def test_a_bare_string_is_short_for_an_object_with_that_type() -> None:
+    bare = load_scenario(with_sections(surrogate="random_forest", acquisition={"scalarization": "linear"}))
+    assert bare.surrogate.type == "random_forest"
+    assert bare.acquisition.scalarization.type == "linear"
+
+
+def test_the_canonical_form_loads_to_the_same_scenario() -> None:
+    scenario = load_scenario(with_sections(preset="paper", surrogate="random_forest"))
+    assert load_scenario(scenario.canonical) == scenario
+
+
+def test_the_canonical_form_says_nothing_of_where_it_came_from() -> None:
+    canonical = load_scenario(with_sections(preset="paper", versions={"numpy": "2"})).canonical
+    assert not {"preset", "extends", "versions"} & set(canonical)
+
+
+def test_null_means_the_default() -> None:
+    assert load_scenario(with_sections(budget=None, seed=None)) == load_scenario(GOOD)
+
+
+def test_whole_floats_are_integers_where_integers_are_wanted() -> None:
+    evaluations = load_scenario(with_sections(budget={"evaluations": 20.0})).budget.evaluations
+    assert isinstance(evaluations, int)
+
+
+def test_real_bounds_are_floats() -> None:
+    assert load_scenario(GOOD).parameters[0].values == (-5.0, 10.0)
+    assert isinstance(load_scenario(GOOD).parameters[0].values[0], float)
+
+
+def test_levels_are_sorted_together_with_their_weights() -> None:
+    size = {"parameter_type": "ordinal", "values": [64, 16, 32], "prior": {"type": "weights", "weights": [3, 1, 2]}}
+    scenario = load_scenario(with_sections(input_parameters={"size": size}))
+    assert scenario.parameters[0].values == (16, 32, 64)
+    assert scenario.parameters[0].prior is not None
+    assert scenario.parameters[0].prior.options["weights"] == [1, 2, 3]
+
+
+def test_no_prior_weighting_is_none() -> None:
+    assert load_scenario(with_sections(acquisition={"prior_weighting": "none"})).acquisition.prior_weighting is None
+
+
+def test_the_folder_of_the_file_is_known(tmp_path: Path) -> None:
+    (tmp_path / "s.json").write_text('{"input_parameters": {"x": {"parameter_type": "real", "values": [0, 1]}}}')
+    assert load_scenario(tmp_path / "s.json", overrides=['objectives=[{"name": "y"}]']).directory == tmp_path
+
+
+def test_a_mistake_in_an_override_names_the_override() -> None:
+    with pytest.raises(ScenarioError, match=r"--set budget\.evaluation=3: \$\.budget\.evaluation: unknown key"):
+        load_scenario(GOOD, overrides=["budget.evaluation=3"])
+
+
+def test_a_mistake_in_a_base_names_the_base(tmp_path: Path) -> None:
+    (tmp_path / "base.json").write_text('{"budget": {"evaluation": 3}}')
+    (tmp_path / "s.json").write_text('{"extends": "base.json", "objectives": [{"name": "y"}]}')
+    with pytest.raises(ScenarioError, match=r"base\.json: \$\.budget\.evaluation"):
+        load_scenario(tmp_path / "s.json")
+
+
+def test_a_mapping_that_is_not_json_is_an_error() -> None:
+    with pytest.raises(ScenarioError, match="not JSON"):
+        load_scenario(with_sections(seed=np.int64(3)))
+
+
+def test_a_mapping_is_left_as_it_was() -> None:
+    given = with_sections(surrogate="random_forest")
+    before = copy.deepcopy(given)
+    load_scenario(given, overrides=["seed=4"])
+    assert given == before
+
+
+def test_a_scenario_can_be_pickled() -> None:
+    scenario = load_scenario(GOOD)
+    assert pickle.loads(pickle.dumps(scenario)) == scenario
+
+
+def test_one_parameter_may_have_only_one_prior() -> None:
+    gaussian = {"type": "gaussian", "mean": 0, "std": 1}
+    document = with_sections(priors=[{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}])
+    document["input_parameters"]["x"]["prior"] = gaussian
+    with pytest.raises(
+        ScenarioError, match=r"\$\.priors\[0\].*'x' already has a prior at \$\.input_parameters\.x\.prior"
+    ):
+        load_scenario(document)
+
+
+def test_the_beta_of_pibo_stays_open_until_the_budget_is_known() -> None:
+    weighting = load_scenario(GOOD).acquisition.prior_weighting
+    assert weighting is not None
+    assert weighting.options["beta"] is None
+    assert math.isclose(weighting.options["floor"], 0.05)
