@@ -1,0 +1,124 @@
+"""``hypermap-lite pareto RUN``: the front of a history, recomputed."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from hypermap_lite.cli.plot import add_reference_point_option, parse_reference_point
+
+if TYPE_CHECKING:
+    from hypermap_lite.plotting.runs import Run
+
+    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+EPILOG: Final = """\
+examples:
+  hypermap-lite pareto outputs/branin
+  hypermap-lite pareto outputs/branin --csv > front.csv
+
+The front is also written to pareto.csv in the run folder. As CSV it goes to stdout and the hypervolume to stderr.
+"""
+
+
+def add_parser(subparsers: Subparsers) -> None:
+    """Add the subcommand."""
+    parser = subparsers.add_parser(
+        "pareto",
+        help="recompute the Pareto front of a run",
+        description="Recompute the Pareto front of a run from its history.csv, print it, and measure its hypervolume.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("run", metavar="RUN", help="run folder or its history.csv")
+    add_reference_point_option(parser)
+    parser.add_argument("--csv", action="store_true", help="print CSV (the default unless stdout is a terminal)")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Write ``pareto.csv`` and print the front and its hypervolume."""
+    from hypermap_lite.history.files import write_atomically
+    from hypermap_lite.plotting.runs import load_runs
+
+    (run,) = load_runs([args.run])
+    summary = describe_front(run, parse_reference_point(args.reference_point))
+    text = front_as_csv(run)
+    write_atomically(run.folder / "pareto.csv", text)
+    if args.csv or not sys.stdout.isatty():
+        print(text, end="")
+        print(summary, file=sys.stderr)
+    else:
+        print(front_as_table(run))
+        print(summary)
+    return 0
+
+
+def front_as_csv(run: Run) -> str:
+    """Return the rows of the history that are on the front, with its header, as CSV."""
+    from hypermap_lite.history.csv_format import format_record
+
+    rows = _front_rows(run)
+    return "".join(format_record(fields) for fields in [run.columns, *([*row.values()] for row in rows)])
+
+
+def front_as_table(run: Run) -> str:
+    """Return the front for people: trial, objectives with standard errors, and parameters, best first.
+
+    Rows are in the order of the first objective, best first; numbers have four significant digits.
+    """
+    names = [objective.name for objective in run.objectives]
+    parameters = list(run.columns[: run.columns.index(names[0])])
+    first = run.objectives[0]
+    rows = sorted(_front_rows(run), key=lambda row: first.sign * float(row[first.name]))
+    header = ["trial", *(f"{o.name} ({o.goal.value})" for o in run.objectives), *parameters]
+    lines = [
+        [row.get("trial", ""), *(_with_error(row, name) for name in names), *(_shorten(row[p]) for p in parameters)]
+        for row in rows
+    ]
+    return _align([header, *lines])
+
+
+def describe_front(run: Run, reference_point: Mapping[str, float] | None = None) -> str:
+    """Return one line on the front: its size and, with several objectives, its hypervolume."""
+    from hypermap_lite.objectives import to_minimization
+    from hypermap_lite.pareto import hypervolume
+    from hypermap_lite.plotting.reference import common_reference_point
+
+    n_front, n_completed = int(run.is_front.sum()), int(run.is_completed.sum())
+    size = f"{n_front} of {n_completed} completed evaluations on the front"
+    if len(run.objectives) == 1 and not reference_point:
+        return size
+    reference = common_reference_point([run], reference_point)
+    volume = hypervolume(run.Y, to_minimization(run.objectives, reference.values))
+    return f"{size}; hypervolume {volume:.6g} ({reference})"
+
+
+def _front_rows(run: Run) -> list[Mapping[str, str]]:
+    return [row for row, is_front in zip(run.rows, run.is_front, strict=True) if is_front]
+
+
+def _with_error(row: Mapping[str, str], name: str) -> str:
+    """Return a value with its standard error, if there is one."""
+    from hypermap_lite.plotting.reference import number
+
+    error = row.get(f"{name}_sem", "")
+    return f"{_shorten(row[name])} ± {number(float(error), 2)}" if error else _shorten(row[name])
+
+
+def _shorten(text: str) -> str:
+    """Return a number with four significant digits, any other text as it is."""
+    from hypermap_lite.plotting.reference import number
+
+    try:
+        return number(float(text))
+    except ValueError:
+        return text
+
+
+def _align(lines: Sequence[Sequence[str]]) -> str:
+    """Return lines of cells as text with right-aligned columns."""
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join("  ".join(cell.rjust(w) for cell, w in zip(line, widths, strict=True)) for line in lines)

@@ -1,0 +1,77 @@
+"""``plot hypervolume``: how the dominated volume grew with the evaluations."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from hypermap_lite.errors import UsageError
+from hypermap_lite.objectives import to_minimization
+from hypermap_lite.pareto import hypervolume_trace
+from hypermap_lite.plotting import style, traces
+from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
+from hypermap_lite.plotting.runs import Run, by_label, load_runs
+from hypermap_lite.typing import FloatArray
+
+logger = logging.getLogger(__name__)
+
+
+def plot_hypervolume(
+    folders: Sequence[str | Path],
+    output: str | Path | None = None,
+    *,
+    labels: Sequence[str] | None = None,
+    title: str | None = None,
+    reference_point: Mapping[str, float] | None = None,
+    data: bool = False,
+) -> list[Path]:
+    """Draw hypervolume against evaluations; see `hypermap_lite.plotting.PlotFunction`.
+
+    All runs are measured from one reference point. Runs that share a label become their mean with a band of one
+    standard error, up to the end of the shortest. Failed evaluations leave the hypervolume as it was.
+    """
+    runs = load_runs(folders, labels)
+    if len(runs[0].objectives) < 2:
+        raise UsageError("`plot hypervolume` needs at least 2 objectives, this scenario has 1: try `plot objectives`")
+    reference = common_reference_point(runs, reference_point)
+    if reference.is_inferred:
+        logger.warning("%s; set `reference_point` in the scenario to compare with other pictures", reference)
+    volumes = run_traces(runs, reference)
+    target = style.output_path(output, runs, "hypervolume")
+    with style.house_style():
+        figure = style.new_figure(7.2, 5.0)
+        axes = figure.subplots()
+        traces.draw_design_ends(axes, runs)
+        for index, group in enumerate(volumes.values()):
+            traces.draw_trace(axes, group, style.colour(index))
+        traces.show_evaluations(axes, runs)
+        axes.set_ylim(bottom=0)
+        style.label_with_power(axes, "hypervolume")
+        axes.set_xlabel(f"evaluations\n({reference})")
+        style.add_legend(figure, traces.trace_legend(runs, single="hypervolume"))
+        style.set_title(figure, title, runs)
+        files = style.save(figure, target)
+    return [*files, style.save_data(*_numbers_behind(runs, volumes), target)] if data else files
+
+
+def run_traces(runs: Sequence[Run], reference: ReferencePoint) -> dict[str, list[FloatArray]]:
+    """Return the hypervolume after each evaluation of each run, shape (n,), under the runs' labels."""
+    corner = to_minimization(runs[0].objectives, reference.values)
+    return {label: [hypervolume_trace(run.Y, corner) for run in group] for label, group in by_label(runs).items()}
+
+
+def _numbers_behind(
+    runs: Sequence[Run], volumes: Mapping[str, Sequence[FloatArray]]
+) -> tuple[list[str], list[list[object]]]:
+    """Return the header and rows of the data of the picture: one row per run and evaluation."""
+    rows: list[list[object]] = []
+    for label, group in by_label(runs).items():
+        mean, error = traces.mean_and_error(volumes[label])
+        for run, trace in zip(group, volumes[label], strict=True):
+            for i, volume in enumerate(trace):
+                summary = [float(mean[i]), float(error[i])] if i < len(mean) else [np.nan, np.nan]
+                rows.append([label, str(run.folder), i + 1, float(volume), *summary])
+    return ["label", "run", "evaluation", "hypervolume", "mean", "standard_error"], rows
