@@ -1,4 +1,4 @@
-"""``hypermap-lite pareto RUN``: the front of a history, recomputed."""
+"""``pareto RUN``: the front of a history, recomputed."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 EPILOG: Final = """\
 examples:
-  hypermap-lite pareto outputs/branin
-  hypermap-lite pareto outputs/branin --csv > front.csv
+  python -m hypermap_lite pareto outputs/branin
+  python -m hypermap_lite pareto outputs/branin --csv > front.csv
 
 The front is also written to pareto.csv in the run folder. As CSV it goes to stdout and the hypervolume to stderr.
 """

@@ -1,4 +1,4 @@
-"""``hypermap-lite plot KIND RUN...``: pictures of one or several runs."""
+"""``plot KIND RUN...``: pictures of one or several runs."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ kinds:
 {kinds}
 
 examples:
-  hypermap-lite plot pareto outputs/branin
-  hypermap-lite plot hypervolume outputs/with_prior outputs/no_prior --labels "operator prior,no prior"
-  hypermap-lite plot hypervolume "operator prior=outputs/op_*" "no prior=outputs/no_*" --output figure.pdf
+  python -m hypermap_lite plot pareto outputs/branin
+  python -m hypermap_lite plot hypervolume outputs/with_prior outputs/no_prior --labels "operator prior,no prior"
+  python -m hypermap_lite plot hypervolume "operator prior=outputs/op_*" "no prior=outputs/no_*" --output figure.pdf
 
 Each picture becomes a PNG and a PDF (or the one that --output names), in the run folder if there is one run and
 in the working directory if there are several. The files written are listed on stdout.
