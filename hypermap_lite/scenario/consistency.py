@@ -7,21 +7,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from hypermap_lite.errors import ScenarioError, nearest
-from hypermap_lite.scenario.messages import enumerate_names, show
+from hypermap_lite.history.rows import RESERVED_COLUMNS
+from hypermap_lite.scenario.messages import enumerate_names
 
-RESERVED_NAMES: Final = frozenset(
-    {"Timestamp", "trial", "phase", "state", "replicates", "prior_weight", "acquisition_value"}
-    | {"suggest_seconds", "evaluate_seconds", "error", "replicate", "seed", "seconds", "more", "feasible"}
-    | {"params_json", "params_file", "trial_dir", "result_file"}
-)
-"""Columns of the CSV files and placeholders of commands, which no parameter or objective may be called."""
+RESERVED_NAMES: Final = RESERVED_COLUMNS | {"feasible"}
+"""Columns of the result files, and what evaluators answer besides objectives: no names for the user's own things."""
 
 
 def check_consistency(document: Mapping[str, Any]) -> None:
     """Raise a `ScenarioError` at the first contradiction between the sections of a filled document."""
     _check_names(document["input_parameters"], document["objectives"])
-    for name, parameter in document["input_parameters"].items():
-        _check_default(f"$.input_parameters.{name}", parameter)
     _check_joint_priors(document["input_parameters"], document["priors"])
     _check_limits(document)
     _check_budget(document)
@@ -39,23 +34,8 @@ def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str
             problem = f"a parameter and an objective are called '{name}'"
             raise ScenarioError(path, problem, allowed="each name once", hint="Both are columns of the history.")
         if name in RESERVED_NAMES or name in standard_errors:
-            problem = f"'{name}' is the name of a column of the result files or a placeholder"
+            problem = f"'{name}' is the name of a column of the result files"
             raise ScenarioError(path, problem, allowed="any other name", hint=f"Call it '{name}_value', say.")
-
-
-def _check_default(path: str, parameter: Mapping[str, Any]) -> None:
-    default, values = parameter["parameter_default"], parameter["values"]
-    if default is None:
-        return
-    if parameter["parameter_type"] in ("real", "integer"):
-        low, high = values
-        legal, allowed = low <= default <= high or low >= high, f"a number from {low} to {high}"
-    else:
-        legal, allowed = default in values, f"one of {enumerate_names([str(value) for value in values])}"
-    if not legal:
-        hint = nearest(default, values) if isinstance(default, str) else ""
-        problem = f"the default {show(default)} is not a value of the parameter"
-        raise ScenarioError(f"{path}.parameter_default", problem, allowed=allowed, hint=hint)
 
 
 def _check_joint_priors(parameters: Mapping[str, Any], priors: Sequence[Mapping[str, Any]]) -> None:

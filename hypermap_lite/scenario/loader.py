@@ -64,7 +64,6 @@ def complete_document(document: Mapping[str, Any]) -> dict[str, Any]:
         document = merge(root_schema(), preset, document)
     complete = fill_derived(fill(root_schema(), document))
     check_consistency(complete)
-    complete["input_parameters"] = {n: _rising(p) for n, p in complete["input_parameters"].items()}
     return complete
 
 
@@ -77,14 +76,3 @@ def _layers_of(source: Mapping[str, Any]) -> list[Layer]:
         return [Layer("", document)]
     bases = document["extends"] if isinstance(document["extends"], list) else [document["extends"]]
     return [*(layer for base in bases for layer in read_layers(Path(base))), Layer("", document)]
-
-
-def _rising(parameter: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return an ordinal parameter with its levels, and their weights, in rising order."""
-    values, prior = parameter["values"], parameter["prior"]
-    if parameter["parameter_type"] != "ordinal" or values == sorted(values):
-        return parameter
-    if prior and prior["type"] == "weights" and len(prior["weights"]) == len(values):
-        weights = [weight for _, weight in sorted(zip(values, prior["weights"], strict=True))]
-        prior = {**prior, "weights": weights}
-    return {**parameter, "values": sorted(values), "prior": prior}

@@ -157,10 +157,12 @@ BAD: dict[str, Bad] = {
     "default_outside_bounds": Bad(
         changed("input_parameters.x.parameter_default", 11),
         ("$.input_parameters.x.parameter_default", "11", "a number from -5 to 10"),
+        False,
     ),
     "default_not_a_level": Bad(
         changed("input_parameters.mode.parameter_default", "save"),
-        ("$.input_parameters.mode.parameter_default", '"save"', "one of fast, safe", "'safe'"),
+        ("$.input_parameters.mode.parameter_default", "'save'", "'fast', 'safe'"),
+        False,
     ),
     # priors
     "zero_std": Bad(

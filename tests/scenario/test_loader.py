@@ -90,14 +90,6 @@ def test_real_bounds_are_floats() -> None:
     assert isinstance(load_scenario(GOOD).parameters[0].values[0], float)
 
 
-def test_levels_are_sorted_together_with_their_weights() -> None:
-    size = {"parameter_type": "ordinal", "values": [64, 16, 32], "prior": {"type": "weights", "weights": [3, 1, 2]}}
-    scenario = load_scenario(with_sections(input_parameters={"size": size}))
-    assert scenario.parameters[0].values == (16, 32, 64)
-    assert scenario.parameters[0].prior is not None
-    assert scenario.parameters[0].prior.options["weights"] == [1, 2, 3]
-
-
 def test_no_prior_weighting_is_none() -> None:
     assert load_scenario(with_sections(acquisition={"prior_weighting": "none"})).acquisition.prior_weighting is None
 

@@ -1,0 +1,58 @@
+"""``check``: validate a scenario, print what it amounts to, and warn of what is probably not meant."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, _SubParsersAction
+
+
+def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> ArgumentParser:
+    """Add the subcommand to the command line."""
+    parser = subparsers.add_parser(
+        "check",
+        help="validate a scenario without evaluating anything",
+        description="Validate a scenario, print the effective one with every default filled in, and warn of what is "
+        "probably not meant. Nothing is evaluated.",
+    )
+    parser.add_argument("scenario", help="scenario file (JSON)")
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="KEY.PATH=VALUE",
+        help="change one value, as in budget.evaluations=30; may be repeated",
+    )
+    parser.add_argument("--json", action="store_true", help="print the effective scenario as JSON")
+    parser.set_defaults(execute=execute)
+    return parser
+
+
+def execute(args: Namespace) -> int:
+    """Check the scenario named on the command line.
+
+    Raises
+    ------
+    ScenarioError
+        If it cannot be run as written.
+    """
+    from hypermap_lite.assembly import validate
+    from hypermap_lite.errors import ScenarioError
+    from hypermap_lite.scenario import load_scenario
+    from hypermap_lite.scenario.lint import lint
+    from hypermap_lite.scenario.summary import summarize
+
+    scenario = load_scenario(args.scenario, overrides=args.overrides)
+    try:
+        validate(scenario)
+    except ScenarioError as error:
+        raise error.within(scenario.origin_of(error.path)) from error
+    print(json.dumps(scenario.canonical, indent=2, ensure_ascii=False) if args.json else summarize(scenario))
+    for warning in lint(scenario):
+        print(f"warning: {warning}", file=sys.stderr)
+    return 0
