@@ -1,0 +1,47 @@
+"""Tests for consistency.py; its messages are tested over all of `bad_scenarios`."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import pytest
+
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.scenario.consistency import RESERVED_NAMES, check_consistency
+from hypermap_lite.scenario.loader import complete_document
+from tests.scenario.bad_scenarios import GOOD
+
+
+def complete(**sections: Any) -> dict[str, Any]:
+    return complete_document(copy.deepcopy(GOOD) | sections)
+
+
+def test_a_good_document_passes() -> None:
+    check_consistency(complete())
+
+
+@pytest.mark.parametrize("name", sorted(RESERVED_NAMES))
+def test_columns_of_the_result_files_are_no_names(name: str) -> None:
+    with pytest.raises(ScenarioError, match=rf"\$\.objectives\[0\]\.name: '{name}'"):
+        complete(objectives=[{"name": name}])
+
+
+def test_a_parameter_may_not_be_called_like_the_standard_error_of_an_objective() -> None:
+    with pytest.raises(ScenarioError, match=r"\$\.input_parameters\.cost_sem"):
+        complete(input_parameters={"cost_sem": GOOD["input_parameters"]["x"]})
+
+
+def test_two_joint_priors_may_not_share_a_parameter() -> None:
+    prior = {"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}
+    with pytest.raises(ScenarioError, match=r"\$\.priors\[1\].*'x' already has a prior at \$\.priors\[0\]"):
+        complete(priors=[prior, prior])
+
+
+def test_a_joint_prior_may_have_several_components() -> None:
+    component = {"mean": {"x": 1, "n": 2}, "std": {"x": 2, "n": 1}}
+    check_consistency(complete(priors=[{"type": "mixture", "components": [component, component]}]))
+
+
+def test_a_design_may_take_the_whole_budget() -> None:
+    check_consistency(complete(budget={"evaluations": 8}, design_of_experiment={"number_of_samples": 8}))

@@ -1,0 +1,50 @@
+"""Tests for defaults.py."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+from hypermap_lite.scenario.defaults import fill, fill_derived, has_priors
+from hypermap_lite.scenario.schemas import root_schema
+from tests.scenario.bad_scenarios import GOOD
+
+
+def filled(**sections: Any) -> dict[str, Any]:
+    return fill_derived(fill(root_schema(), copy.deepcopy(GOOD) | sections))
+
+
+def test_filling_twice_changes_nothing() -> None:
+    once = filled()
+    assert fill_derived(fill(root_schema(), once)) == once
+
+
+def test_sections_come_in_the_order_of_the_schema() -> None:
+    assert list(filled(seed=3))[:4] == ["application_name", "description", "seed", "input_parameters"]
+
+
+def test_options_of_the_chosen_type_are_filled_and_of_no_other() -> None:
+    assert filled(surrogate={"type": "random_forest"})["surrogate"] == {
+        "type": "random_forest",
+        "number_of_trees": 100,
+        "max_features": 0.5,
+        "min_samples_leaf": 2,
+    }
+
+
+def test_items_of_lists_are_filled() -> None:
+    assert filled()["objectives"][0] == {"name": "cost", "goal": "minimize", "reference_point": None, "description": ""}
+
+
+def test_the_design_has_two_points_per_parameter_and_at_least_six() -> None:
+    assert filled()["design_of_experiment"]["number_of_samples"] == 8
+    one = {"x": GOOD["input_parameters"]["x"]}
+    assert filled(input_parameters=one)["design_of_experiment"]["number_of_samples"] == 6
+
+
+def test_a_uniform_prior_says_nothing() -> None:
+    uniform = copy.deepcopy(GOOD)
+    uniform["input_parameters"]["x"]["prior"] = {"type": "uniform"}
+    assert not has_priors(uniform)
+    uniform["input_parameters"]["n"]["prior"] = {"type": "beta", "shape": "decay"}
+    assert has_priors(uniform)

@@ -1,0 +1,142 @@
+"""Tests for lint.py."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import pytest
+
+from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.lint import lint, mass_inside
+from hypermap_lite.scenario.model import ParameterSpec
+
+CLEAN: dict[str, Any] = {
+    "input_parameters": {
+        "x": {"parameter_type": "real", "values": [0, 10]},
+        "mode": {"parameter_type": "categorical", "values": ["a", "b"]},
+    },
+    "objectives": [{"name": "cost", "reference_point": 3}, {"name": "gain", "reference_point": 1}],
+}
+
+
+def warnings(**sections: Any) -> list[str]:
+    return lint(load_scenario(copy.deepcopy(CLEAN) | sections))
+
+
+def warnings_for(name: str, **entry: Any) -> list[str]:
+    return warnings(input_parameters=CLEAN["input_parameters"] | {name: entry})
+
+
+def mixture(means: list[float]) -> dict[str, Any]:
+    return {"type": "mixture", "components": [{"mean": mean, "std": 1} for mean in means]}
+
+
+def test_a_clean_scenario_gives_no_warning() -> None:
+    assert warnings() == []
+
+
+@pytest.mark.parametrize("kind", ["categorical", "ordinal"])
+def test_consecutive_integers_are_better_declared_integer(kind: str) -> None:
+    values = ["3", "1", "2"] if kind == "categorical" else [3, 1, 2]
+    (warning,) = warnings_for("n", parameter_type=kind, values=values)
+    assert warning.startswith("$.input_parameters.n: the levels are consecutive integers")
+    assert '"integer" with values [1, 3]' in warning
+
+
+def test_categories_that_are_numbers_are_better_declared_ordinal() -> None:
+    (warning,) = warnings_for("n", parameter_type="categorical", values=["16", "32", "64"])
+    assert '"ordinal"' in warning
+
+
+def test_ordinals_with_gaps_are_fine() -> None:
+    assert warnings_for("n", parameter_type="ordinal", values=[16, 32, 64]) == []
+
+
+@pytest.mark.parametrize(
+    ("prior", "share"),
+    [
+        pytest.param({"type": "gaussian", "mean": -2, "std": 1}, "97.7 %", id="gaussian"),
+        pytest.param({"type": "gaussian", "mean": 1e6, "std": 1}, "more than 99.9 %", id="far_away"),
+        pytest.param(mixture([-2, 12]), "97.7 %", id="mixture"),
+    ],
+)
+def test_a_prior_outside_the_bounds_says_how_much(prior: dict[str, Any], share: str) -> None:
+    (warning,) = warnings_for("x", parameter_type="real", values=[0, 10], prior=prior)
+    assert warning.startswith(f"$.input_parameters.x.prior: {share} of its mass lies outside")
+
+
+@pytest.mark.parametrize(
+    "prior",
+    [
+        pytest.param({"type": "gaussian", "mean": -1, "std": 1}, id="tail_inside"),
+        pytest.param(mixture([-9, 5]), id="one_component_inside"),
+        pytest.param({"type": "beta", "shape": "decay"}, id="never_outside"),
+    ],
+)
+def test_a_prior_with_mass_inside_is_fine(prior: dict[str, Any]) -> None:
+    assert warnings_for("x", parameter_type="real", values=[0, 10], prior=prior) == []
+
+
+def test_a_joint_prior_outside_the_bounds_is_named() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": -5}, "std": {"x": 1}}]}]
+    (warning,) = warnings(priors=priors)
+    assert warning.startswith("$.priors[0]: more than 99.9 %")
+
+
+@pytest.mark.parametrize(
+    ("kind", "scale", "values", "mean", "std", "expected"),
+    [
+        pytest.param("real", "linear", (0.0, 1.0), 0.5, 0.5, 0.6827, id="one_sigma"),
+        pytest.param("real", "linear", (0.0, 1.0), 0.0, 1e-3, 0.5, id="half"),
+        pytest.param("real", "log", (0.01, 1.0), 0.1, 1.0, 0.6827, id="decades"),
+        pytest.param("integer", "linear", (1, 1), 1, 0.5, 0.6827, id="half_a_step_beyond_an_integer"),
+        pytest.param("real", "linear", (0.0, 1.0), -40.0, 1.0, 0.0, id="far_away"),
+    ],
+)
+def test_mass_inside_is_that_of_the_normal_distribution(
+    kind: str, scale: str, values: tuple[float, float], mean: float, std: float, expected: float
+) -> None:
+    parameter = ParameterSpec(name="x", parameter_type=kind, values=values, scale=scale)
+    assert mass_inside(parameter, mean, std) == pytest.approx(expected, abs=1e-4)
+
+
+def test_missing_reference_points_are_named_with_two_objectives() -> None:
+    (warning,) = warnings(objectives=[{"name": "cost"}, {"name": "gain", "reference_point": 1}])
+    assert warning.startswith("$.objectives[0]: 'cost' has no reference_point")
+    assert warnings(objectives=[{"name": "cost"}]) == []
+
+
+def test_a_budget_of_the_design_alone_fits_no_model() -> None:
+    (warning,) = warnings(budget={"evaluations": 6})
+    assert "no model is ever fitted" in warning
+    assert warnings(budget={"evaluations": 6}, optimizer="random_search") == []
+
+
+def test_a_space_smaller_than_the_budget_is_named() -> None:
+    n = {"parameter_type": "integer", "values": [1, 4]}
+    (warning,) = warnings(input_parameters={"n": n, "mode": CLEAN["input_parameters"]["mode"]})
+    assert "only 8 configurations" in warning
+
+
+def test_decades_on_a_linear_scale_are_named() -> None:
+    (warning,) = warnings_for("rate", parameter_type="real", values=[1e-5, 1])
+    assert "5.0 decades" in warning
+    assert warnings_for("rate", parameter_type="real", values=[1e-5, 1], scale="log") == []
+
+
+def test_some_defaults_without_the_others_are_named() -> None:
+    (warning,) = warnings_for("y", parameter_type="real", values=[0, 1], parameter_default=0.5)
+    assert warning.startswith("$.input_parameters.x: the default configuration is not evaluated")
+
+
+def test_priors_that_nothing_uses_are_named() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": 5}, "std": {"x": 1}}]}]
+    (warning,) = warnings(priors=priors, design_of_experiment="sobol", optimizer="random_search")
+    assert "the priors change nothing" in warning
+    assert warnings(priors=priors, design_of_experiment="sobol") == []
+
+
+def test_workers_that_never_get_a_call_are_named() -> None:
+    (warning,) = warnings(evaluator={"workers": 4, "replicates": 3})
+    assert "only 3 calls" in warning

@@ -1,0 +1,54 @@
+"""Tests for presets.py."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import pytest
+
+from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.model import Scenario
+from hypermap_lite.scenario.presets import PRESETS
+from hypermap_lite.scenario.schemas import root_schema
+from tests.scenario.bad_scenarios import GOOD
+
+PRIORS = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+
+
+def with_preset(name: str, **sections: Any) -> Scenario:
+    return load_scenario(copy.deepcopy(GOOD) | {"preset": name} | sections)
+
+
+def test_the_paper_preset_is_the_method_of_the_paper() -> None:
+    scenario = with_preset("paper", priors=PRIORS)
+    weighting = scenario.acquisition.prior_weighting
+    assert scenario.design.type == "prior_sampling"
+    assert scenario.surrogate.type == "gaussian_process"
+    assert scenario.acquisition.function.type == "noisy_expected_improvement"
+    assert scenario.acquisition.scalarization.type == "linear"
+    assert scenario.acquisition.weights.options == {"alpha": 1.0}
+    assert weighting is not None
+    assert weighting.options == {"beta": None, "floor": 1e-6}
+
+
+def test_the_paper_preset_samples_at_random_without_priors() -> None:
+    assert with_preset("paper").design.type == "random_sampling"
+
+
+def test_the_users_own_keys_win() -> None:
+    acquisition = {"type": "upper_confidence_bound", "prior_weighting": {"floor": 0.1}}
+    scenario = with_preset("paper", acquisition=acquisition, design_of_experiment="grid")
+    assert scenario.design.type == "grid"
+    assert scenario.acquisition.function.type == "upper_confidence_bound"
+    assert scenario.acquisition.scalarization.type == "linear"
+    assert scenario.acquisition.prior_weighting is not None
+    assert scenario.acquisition.prior_weighting.options["floor"] == pytest.approx(0.1)
+
+
+def test_a_preset_can_be_set_on_the_command_line() -> None:
+    assert load_scenario(GOOD, overrides=["preset=paper"]) == with_preset("paper")
+
+
+def test_the_schema_lists_the_presets() -> None:
+    assert root_schema()["properties"]["preset"]["enum"] == [*PRESETS, None]

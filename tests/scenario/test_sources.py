@@ -1,0 +1,36 @@
+"""Tests for sources.py."""
+
+from __future__ import annotations
+
+import pytest
+
+from hypermap_lite.scenario.sources import Layer, keys_of, origin_of, path_of
+
+LAYERS = (
+    Layer("base.json", {"seed": 1, "objectives": [{"name": "a"}], "budget": {"evaluations": 5}}),
+    Layer("leaf.json", {"budget": {"minutes": 3}}),
+    Layer("--set objectives.0.goal=x", {"objectives": {0: {"goal": "x"}}}),
+)
+
+
+@pytest.mark.parametrize(
+    ("path", "origin"),
+    [
+        pytest.param("$.seed", "base.json", id="only_in_the_base"),
+        pytest.param("$.budget.evaluations", "base.json", id="below_a_shared_section"),
+        pytest.param("$.budget", "leaf.json", id="last_writer_of_a_section"),
+        pytest.param("$.objectives[0].goal", "--set objectives.0.goal=x", id="override"),
+        pytest.param("$.objectives[0].name", "base.json", id="beside_an_override"),
+        pytest.param("$.budget.minutes.x", "leaf.json", id="nearest_above"),
+        pytest.param("$", "leaf.json", id="whole_document"),
+        pytest.param("$.evaluator", "leaf.json", id="nowhere"),
+    ],
+)
+def test_the_origin_is_the_layer_that_wrote_the_value(path: str, origin: str) -> None:
+    assert origin_of(path, LAYERS) == origin
+
+
+def test_keys_and_paths_are_inverse() -> None:
+    keys = ("priors", 0, "components", 12, "mean", "x-1")
+    assert keys_of(path_of(keys)) == keys
+    assert path_of(keys) == "$.priors[0].components[12].mean.x-1"

@@ -1,0 +1,65 @@
+"""Tests for summary.py."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.summary import summarize
+from tests.scenario.bad_scenarios import GOOD
+
+
+def page(**sections: Any) -> str:
+    return summarize(load_scenario(copy.deepcopy(GOOD) | sections))
+
+
+def test_every_parameter_has_a_line_with_bounds_scale_and_prior() -> None:
+    rate = {"parameter_type": "real", "values": [1e-5, 0.1], "scale": "log", "parameter_default": 0.01}
+    rate["prior"] = {"type": "gaussian", "mean": 0.001, "std": 1}
+    text = page(input_parameters={"rate": rate, "mode": GOOD["input_parameters"]["mode"]})
+    assert "rate  real         1e-05 to 0.1  log    0.01     gaussian(mean=0.001, std=1)" in text
+    assert "mode  categorical  fast, safe    -      -        -" in text
+
+
+def test_the_method_says_which_evaluations_are_chosen_how() -> None:
+    text = page(budget={"evaluations": 20})
+    assert "evaluations 1 to 8: sobol" in text
+    assert "evaluations 9 to 20: noisy_expected_improvement(samples=64) on a gaussian_process" in text
+    assert "2 objectives: tchebyshev(rho=0.05) with weights from dirichlet(alpha=1)" in text
+    assert "no priors" in text
+
+
+def test_the_beta_of_pibo_is_worked_out() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+    text = page(priors=priors, budget={"evaluations": 28}, objectives=[{"name": "cost"}])
+    assert "acquisition weighted by pibo(beta=2, floor=0.05)" in text
+    assert "priors      mixture(components=[{mean: {x: 1}, std: {x: 2}, weight: 1}])" in text
+    assert "one objective" in text
+
+
+def test_unused_priors_are_said_to_be_so() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+    assert "not in the acquisition" in page(priors=priors, acquisition={"prior_weighting": "none"})
+
+
+def test_a_search_without_a_model_names_no_acquisition() -> None:
+    text = page(optimizer="random_search")
+    assert "evaluations 9 to 50: random_search" in text
+    assert "expected_improvement" not in text
+
+
+def test_a_budget_of_the_design_alone_names_no_model() -> None:
+    assert "gaussian_process" not in page(budget={"evaluations": 5})
+
+
+def test_the_evaluator_line_says_what_is_called_and_how_often() -> None:
+    evaluator = {"type": "command", "command": ["./run", "{x}"], "replicates": 7, "workers": 2, "timeout_seconds": 60}
+    assert "command ./run {x}; calls: 7 per configuration, 2 at a time, 60 s each" in page(evaluator=evaluator)
+    assert "driven by ask and tell" in page()
+
+
+def test_the_budget_line_says_batches_and_minutes() -> None:
+    assert "30 evaluations, 3 at a time, at most 2.5 min" in page(
+        budget={"evaluations": 30, "batch_size": 3, "minutes": 2.5}
+    )
