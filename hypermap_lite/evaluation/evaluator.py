@@ -105,7 +105,7 @@ def outcome_of(result: object, objectives: Sequence[str]) -> Outcome:
             return failure(f"the result has no '{name}' (it has: {returned})", metrics)
         value = numbers[name]
         if value is None or not math.isfinite(value):
-            return failure(f"'{name}' is {entries[name]!r}, not a finite number", metrics)
+            return failure(f"'{name}' is {shorten(entries[name])}, not a finite number", metrics)
     values = {name: number for name in objectives if (number := numbers[name]) is not None}
     return Outcome(state=State.COMPLETED, values=values, metrics=metrics)
 
@@ -118,11 +118,16 @@ def _by_name(result: object, objectives: Sequence[str]) -> Mapping[str, object] 
         return {objectives[0]: result}
     expected = f"expected a mapping with {', '.join(map(repr, objectives))}"
     if isinstance(result, str | bytes) or not hasattr(result, "__len__") or not hasattr(result, "__iter__"):
-        return f"the result is {result!r}; {expected}"
+        return f"the result is {shorten(result)}; {expected}"
     items = list(result)
     if len(items) != len(objectives):
         return f"the result has {len(items)} numbers for {len(objectives)} objectives; {expected}"
     return dict(zip(objectives, items, strict=True))
+
+
+def shorten(value: object) -> str:
+    """Return a value as Python writes it, cut to a length that leaves room for the rest of a message."""
+    return repr(value)[:80]
 
 
 def as_number(value: object) -> float | None:

@@ -57,7 +57,6 @@ class ProcessExecutor:
     def __init__(self, n_workers: int, timeout_seconds: float | None = None) -> None:
         self.timeout_seconds = timeout_seconds
         self._slots: list[Worker | None] = [None] * n_workers
-        self._evaluator: Evaluator | None = None
         self._pickled = b""
 
     def run(self, evaluator: Evaluator, requests: Iterable[EvaluationRequest]) -> Generator[Replicate, None, None]:
@@ -96,10 +95,10 @@ class ProcessExecutor:
         self.close()
 
     def _prepare(self, evaluator: Evaluator) -> None:
-        if evaluator is not self._evaluator:
-            self._pickled = pickled(evaluator)
+        content = pickled(evaluator)
+        if content != self._pickled:
             self.close()
-            self._evaluator = evaluator
+            self._pickled = content
 
     def _busy(self) -> list[Worker]:
         return [worker for worker in self._slots if worker is not None and worker.request is not None]

@@ -11,8 +11,8 @@ from hypermap_lite.typing import Value
 BUILT_IN = ("params_json", "params_file", "result_file", "seed", "trial", "replicate", "trial_dir", "python")
 """Placeholders every command may use; the rest are the names of its parameters."""
 
-_PATTERN = re.compile(r"\{\{(?P<literal>[^{}\s]*)\}\}|\{(?P<name>[^{}\s\"':;,$]+)\}")
-"""``{name}``, or ``{{name}}`` for the text ``{name}``; other braces (JSON, shell, awk) are left alone."""
+_PATTERN = re.compile(r"\{\{(?P<literal>[^{}\s]*)\}\}|(?<!\$)\{(?P<name>[^{}\s\"':;,$]+)\}")
+"""``{name}``, or ``{{name}}`` for the text ``{name}``; other braces (JSON, ``${VARIABLE}``, awk) are left alone."""
 
 
 def placeholders_in(text: str) -> Iterator[str]:

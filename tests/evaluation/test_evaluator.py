@@ -1,0 +1,106 @@
+"""Tests for evaluator.py."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hypermap_lite.errors import EvaluationError
+from hypermap_lite.evaluation.evaluator import as_number, call, failure, outcome_of
+from hypermap_lite.evaluation.outcome import Outcome, State
+from tests.evaluation.examples import request
+
+
+def raising(error):
+    def evaluate(request):
+        raise error
+
+    return evaluate
+
+
+def test_mapping_gives_objectives_and_metrics():
+    outcome = outcome_of({"g": 2, "f": np.float32(0.5), "speed": True, "note": "x", "bad": math.nan}, ["f", "g"])
+    assert outcome == Outcome(state=State.COMPLETED, values={"f": 0.5, "g": 2.0}, metrics={"speed": 1.0})
+
+
+@pytest.mark.parametrize("result", [(1.0, 2), [1.0, 2.0], np.array([1.0, 2.0])], ids=["tuple", "list", "array"])
+def test_sequence_gives_objectives_in_order(result):
+    assert outcome_of(result, ["f", "g"]).values == {"f": 1.0, "g": 2.0}
+
+
+@pytest.mark.parametrize("result", [3, 3.0, np.float64(3), np.array(3.0), np.array([3.0]), [3.0]])
+def test_number_is_enough_for_one_objective(result):
+    assert outcome_of(result, ["f"]).values == {"f": 3.0}
+
+
+@pytest.mark.parametrize(
+    ("result", "reason"),
+    [
+        pytest.param({"f": 1.0}, "the result has no 'g' (it has: f)", id="missing"),
+        pytest.param({}, "the result has no 'f' (it has: nothing)", id="empty"),
+        pytest.param({"f": math.nan, "g": 1.0}, "'f' is nan, not a finite number", id="nan"),
+        pytest.param({"f": 1.0, "g": -math.inf}, "'g' is -inf, not a finite number", id="infinite"),
+        pytest.param({"f": "1.0", "g": 1.0}, "'f' is '1.0', not a finite number", id="text"),
+        pytest.param({"f": 1.0, "g": None}, "'g' is None, not a finite number", id="none in it"),
+        pytest.param({"f": 10**400, "g": 1.0}, "not a finite number", id="huge integer"),
+        pytest.param(None, "the result is None; expected a mapping with 'f', 'g'", id="nothing"),
+        pytest.param("1,2", "the result is '1,2'; expected a mapping", id="string"),
+        pytest.param(1.0, "the result is 1.0; expected a mapping", id="one number for two"),
+        pytest.param([1.0, 2.0, 3.0], "the result has 3 numbers for 2 objectives", id="too many"),
+        pytest.param([1.0, math.nan], "'g' is nan", id="nan in a list"),
+    ],
+)
+def test_unusable_result_is_a_failure_with_its_reason(result, reason):
+    outcome = outcome_of(result, ["f", "g"])
+    assert outcome.state is State.FAILED
+    assert outcome.values == {}
+    assert reason in outcome.error
+
+
+@pytest.mark.parametrize("no", [False, 0, np.False_])
+def test_result_may_say_that_the_configuration_is_not_allowed(no):
+    outcome = outcome_of({"feasible": no, "depth": 2.0}, ["f"])
+    assert (outcome.state, outcome.metrics) == (State.INFEASIBLE, {"depth": 2.0})
+
+
+def test_feasible_result_needs_its_objectives_and_keeps_no_such_metric():
+    assert outcome_of({"feasible": True, "f": 1.0}, ["f"]) == Outcome(state=State.COMPLETED, values={"f": 1.0})
+
+
+def test_failure_keeps_the_numbers_that_explain_it():
+    assert outcome_of({"f": math.nan, "steps": 7}, ["f"]).metrics == {"steps": 7.0}
+
+
+def test_array_of_several_numbers_is_no_number():
+    assert as_number(np.array([1.0, 2.0])) is None
+
+
+def test_exception_becomes_a_failure_and_its_traceback_a_file(tmp_path):
+    record = call(raising(ValueError("bad\n  luck")), request(tmp_path))
+    assert (record.outcome.state, record.outcome.error) == (State.FAILED, "ValueError: bad luck")
+    assert "Traceback" in (tmp_path / "0000" / "replicate_0.traceback.log").read_text()
+    assert record.seconds >= 0
+
+
+def test_known_failure_needs_no_traceback(tmp_path):
+    record = call(raising(EvaluationError("out of reach")), request(tmp_path))
+    assert record.outcome.error == "out of reach"
+    assert not (tmp_path / "0000").exists()
+
+
+def test_exit_of_the_black_box_does_not_end_the_run(tmp_path):
+    assert call(raising(SystemExit(2)), request(tmp_path)).outcome.error == "SystemExit: 2"
+
+
+def test_interrupt_is_not_a_failure(tmp_path):
+    with pytest.raises(KeyboardInterrupt):
+        call(raising(KeyboardInterrupt()), request(tmp_path))
+
+
+def test_folder_that_cannot_be_written_does_not_hide_the_failure(tmp_path):
+    (tmp_path / "0000").write_text("a file in the way")
+    assert call(raising(ValueError()), request(tmp_path)).outcome.error == "ValueError"
+
+
+def test_long_reason_is_cut():
+    assert len(failure("x" * 1000).error) == 300
