@@ -60,7 +60,9 @@ def common_reference_point(runs: Sequence[Run], given: Mapping[str, float] | Non
     for name, value in (given or {}).items():
         if name not in names:
             hint = nearest(name, names)
-            raise UsageError(f"reference point for an unknown objective '{name}'; known: {', '.join(names)}. {hint}")
+            raise UsageError(
+                f"reference point for an unknown objective '{name}'; known: {', '.join(names)}. {hint}".rstrip()
+            )
         if not math.isfinite(value):
             raise UsageError(f"reference point of '{name}': expected a finite number, got {value}")
     chosen: dict[str, float | None] = {
