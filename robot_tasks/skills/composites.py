@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from robot_tasks.skills.behaviour import Behaviour, SkillContext, Status
+from robot_tasks.skills.behaviour import FAILURE, RUNNING, SUCCESS, Behaviour, SkillContext, Status
 
 
 class Composite(Behaviour):
@@ -40,10 +40,11 @@ class Serial(Composite):
     def _update(self, context: SkillContext) -> Status:
         for position, child in enumerate(self.children, start=1):
             status = child.tick(context)
-            if status is not Status.SUCCESS:
+            if status is RUNNING:
                 _halt(self.children[position:], context)
+            if status is not SUCCESS:
                 return status
-        return Status.SUCCESS
+        return SUCCESS
 
 
 class SerialStar(Composite):
@@ -57,10 +58,10 @@ class SerialStar(Composite):
     def _update(self, context: SkillContext) -> Status:
         while self._current < len(self.children):
             status = self.children[self._current].tick(context)
-            if status is not Status.SUCCESS:
+            if status is not SUCCESS:
                 return status
             self._current += 1
-        return Status.SUCCESS
+        return SUCCESS
 
 
 class Selector(Composite):
@@ -71,10 +72,10 @@ class Selector(Composite):
     def _update(self, context: SkillContext) -> Status:
         for position, child in enumerate(self.children, start=1):
             status = child.tick(context)
-            if status is not Status.FAILURE:
+            if status is not FAILURE:
                 _halt(self.children[position:], context)
                 return status
-        return Status.FAILURE
+        return FAILURE
 
 
 class SelectorStar(Composite):
@@ -88,10 +89,10 @@ class SelectorStar(Composite):
     def _update(self, context: SkillContext) -> Status:
         while self._current < len(self.children):
             status = self.children[self._current].tick(context)
-            if status is not Status.FAILURE:
+            if status is not FAILURE:
                 return status
             self._current += 1
-        return Status.FAILURE
+        return FAILURE
 
 
 class ParallelFs(Composite):
@@ -102,9 +103,9 @@ class ParallelFs(Composite):
     def _update(self, context: SkillContext) -> Status:
         for child in self.children:
             status = child.tick(context)
-            if status is not Status.RUNNING:
+            if status is not RUNNING:
                 return status
-        return Status.RUNNING
+        return RUNNING
 
 
 class ParallelFf(Composite):
@@ -119,12 +120,12 @@ class ParallelFf(Composite):
         still_running = []
         for child in self._waiting:
             status = child.tick(context)
-            if status is Status.FAILURE:
+            if status is FAILURE:
                 return status
-            if status is Status.RUNNING:
+            if status is RUNNING:
                 still_running.append(child)
         self._waiting = still_running
-        return Status.RUNNING if still_running else Status.SUCCESS
+        return RUNNING if still_running else SUCCESS
 
 
 class NoFail(Composite):
@@ -137,9 +138,10 @@ class NoFail(Composite):
 
     def _update(self, context: SkillContext) -> Status:
         status = self.children[0].tick(context)
-        return Status.SUCCESS if status is Status.FAILURE else status
+        return SUCCESS if status is FAILURE else status
 
 
 def _halt(children: Sequence[Behaviour], context: SkillContext) -> None:
     for child in children:
-        child.halt(context)
+        if child.status is RUNNING:
+            child.halt(context)

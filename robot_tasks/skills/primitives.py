@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final, Literal, TypeAlias
 
 from robot_tasks.geometry import Pose, Vector, distance
-from robot_tasks.skills.behaviour import Behaviour, SkillContext, Status
+from robot_tasks.skills.behaviour import FAILURE, RUNNING, SUCCESS, Behaviour, Condition, SkillContext, Status
 
 Axis: TypeAlias = Literal["x", "y", "z"]
 
@@ -29,7 +29,7 @@ class SetGoalPose(Behaviour):
 
     def _update(self, context: SkillContext) -> Status:
         context.goal = self.pose
-        return Status.RUNNING
+        return RUNNING
 
 
 class PositionDistance(Behaviour):
@@ -51,10 +51,10 @@ class PositionDistance(Behaviour):
         self.threshold = threshold
 
     def _update(self, context: SkillContext) -> Status:
-        return Status.SUCCESS if distance(context.tip, self.target) < self.threshold else Status.RUNNING
+        return SUCCESS if distance(context.tip, self.target) < self.threshold else RUNNING
 
 
-class CoordinateBelow(Behaviour):
+class CoordinateBelow(Condition):
     """Succeed while a coordinate of the tip is below a limit, fail otherwise.
 
     Parameters
@@ -73,7 +73,7 @@ class CoordinateBelow(Behaviour):
         self.limit = limit
 
     def _update(self, context: SkillContext) -> Status:
-        return Status.SUCCESS if context.tip[self._index] < self.limit else Status.FAILURE
+        return SUCCESS if context.tip[self._index] < self.limit else FAILURE
 
 
 class CoordinateAtLeast(CoordinateBelow):
@@ -82,4 +82,4 @@ class CoordinateAtLeast(CoordinateBelow):
     __slots__ = ()
 
     def _update(self, context: SkillContext) -> Status:
-        return Status.FAILURE if context.tip[self._index] < self.limit else Status.SUCCESS
+        return FAILURE if context.tip[self._index] < self.limit else SUCCESS

@@ -1,5 +1,6 @@
 """Tests for behaviour.py."""
 
+from robot_tasks.skills import Condition
 from tests.robot_tasks.skills.scripted import FAILURE, IDLE, RUNNING, SUCCESS, Scripted, context, ticks
 
 
@@ -30,3 +31,19 @@ def test_halting_leaves_a_behaviour_that_is_not_running_alone():
     finished.halt(context())
     assert fresh.diary == []
     assert finished.status is SUCCESS
+
+
+def test_a_condition_answers_without_a_life_cycle():
+    class Asked(Condition):
+        def _initialise(self, context):
+            raise AssertionError
+
+        _terminate = _initialise
+
+        def _update(self, context):
+            return SUCCESS
+
+    condition = Asked()
+    assert condition.tick(context()) is SUCCESS
+    condition.halt(context())
+    assert condition.status is SUCCESS
