@@ -1,0 +1,102 @@
+"""The command line: one file per subcommand; the only place that prints and sets exit statuses.
+
+`main` turns every error into one message on stderr and an exit status. What takes long to import is imported by the
+subcommand that needs it, when it runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Final
+
+from hypermap_lite import __version__
+from hypermap_lite.cli import check, pareto, plot, run
+from hypermap_lite.errors import HypermapLiteError
+
+COMMANDS: Final[dict[str, ModuleType]] = {"run": run, "check": check, "pareto": pareto, "plot": plot}
+"""Subcommands by name; each module has `add_parser` and `execute`."""
+
+PROGRAM: Final = "python -m hypermap_lite"
+
+DESCRIPTION: Final = "Multi-objective Bayesian optimization with user priors, driven by one scenario file."
+
+EPILOG: Final = """\
+A first argument that is no command is a scenario to run.
+
+examples:
+  python -m hypermap_lite scenario.json
+  python -m hypermap_lite run scenario.json --workers 2 --set budget.evaluations=30
+
+exit status:
+  0    done
+  1    unexpected error
+  2    the scenario, the command line or the run folder is not right
+  3    no evaluation gave a usable result
+  4    the evaluator keeps failing
+  130  stopped by Ctrl-C; what was finished is saved
+  143  stopped by SIGTERM; what was finished is saved
+"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    common, arguments = _common_parser().parse_known_args(arguments)
+    if not arguments:
+        arguments = ["--help"]
+    elif arguments[0] not in COMMANDS and not arguments[0].startswith("-h") and arguments[0] not in _OWN_OPTIONS:
+        arguments.insert(0, "run")
+    args = _parser().parse_args(arguments, namespace=common)
+    try:
+        status: int = args.execute(args)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader of our stdout has gone
+        return 0
+    except HypermapLiteError as error:
+        return _report(error, str(error), error.exit_code, is_debugging=args.debug)
+    except KeyboardInterrupt as error:
+        return _report(error, "interrupted", 130, is_debugging=args.debug)
+    except Exception as error:
+        message = f"unexpected {type(error).__name__}: {error}\n  hint: --debug shows where; please report it."
+        return _report(error, message, 1, is_debugging=args.debug)
+    return status
+
+
+_OWN_OPTIONS: Final = ("--help", "--version")
+
+
+def _common_parser() -> argparse.ArgumentParser:
+    """Return the options that every command takes, anywhere on the line."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("-q", "--quiet", action="store_true", help="say nothing but warnings and errors on stderr")
+    parser.add_argument("-v", "--verbose", action="store_true", help="say more on stderr")
+    parser.add_argument("--debug", action="store_true", help="show tracebacks of errors")
+    return parser
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description=DESCRIPTION,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        parents=[_common_parser()],
+    )
+    parser.add_argument("--version", action="version", version=f"hypermap-lite {__version__}")
+    subparsers = parser.add_subparsers(metavar="COMMAND", required=True, title="commands")
+    for command in COMMANDS.values():
+        command.add_parser(subparsers)
+    return parser
+
+
+def _report(error: BaseException, message: str, status: int, *, is_debugging: bool) -> int:
+    if is_debugging:
+        traceback.print_exception(error, file=sys.stderr)
+    print(f"error: {message}", file=sys.stderr)
+    return status

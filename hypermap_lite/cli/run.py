@@ -1,0 +1,158 @@
+"""``run``: evaluate a scenario to its end, or go on with it where it stopped."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from argparse import Namespace, RawDescriptionHelpFormatter
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, _SubParsersAction
+    from collections.abc import Sequence
+
+    from hypermap_lite.run import Result
+    from hypermap_lite.scenario.model import Scenario
+
+EPILOG: Final = """\
+The run folder keeps everything: the same command goes on after any stop, and ends as if it had not stopped.
+-q, -v and --debug work here as for every command.
+
+examples:
+  python -m hypermap_lite run scenario.json --seed 3 --workers 2
+  python -m hypermap_lite run scenario.json --set budget.evaluations=30 --output-dir outputs/try1
+"""
+
+
+def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> None:
+    """Add the subcommand to the command line."""
+    parser = subparsers.add_parser(
+        "run",
+        help="run a scenario, or go on with it where it stopped",
+        description="Run a scenario, or go on with it where it stopped.",
+        epilog=EPILOG,
+        formatter_class=RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("scenario", help="scenario file (JSON)")
+    parser.add_argument("--seed", type=int, metavar="N", help="seed, instead of the scenario's")
+    parser.add_argument("--workers", type=int, metavar="N", help="evaluations at the same time; results stay the same")
+    parser.add_argument("--output-dir", metavar="DIR", help="run folder (default: the scenario's)")
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="KEY.PATH=VALUE",
+        help="change one value, as in budget.evaluations=30; may be repeated",
+    )
+    parser.add_argument(
+        "--fresh", action="store_true", help="start anew; an existing run folder is renamed to DIR.bak-N, never deleted"
+    )
+    parser.add_argument("--no-plot", action="store_true", help="draw no picture at the end")
+    parser.set_defaults(execute=execute)
+
+
+def execute(args: Namespace) -> int:
+    """Run the scenario named on the command line, and print what it found.
+
+    Raises
+    ------
+    HypermapLiteError
+        If it cannot be run, or ends without a usable result.
+    """
+    from hypermap_lite.cli.progress import progress
+    from hypermap_lite.cli.signals import StoppedAtOnce, StopSignals
+    from hypermap_lite.evaluation.runner import StopReason
+    from hypermap_lite.run import run_scenario
+    from hypermap_lite.scenario import load_scenario
+
+    scenario = load_scenario(args.scenario, overrides=overrides_of(args))
+    if args.fresh:
+        _set_aside(Path(scenario.output.directory))
+    try:
+        with StopSignals() as signals, progress(is_quiet=args.quiet, is_verbose=args.verbose) as observer:
+            result = run_scenario(scenario, observer=observer, should_stop=lambda: signals.is_requested)
+    except StoppedAtOnce as stop:
+        return _say_how_to_go_on(scenario, args, stop.exit_status)
+    if result.stop_reason is StopReason.INTERRUPTED:
+        return _say_how_to_go_on(scenario, args, 130)
+    _print_result(scenario, result, has_picture=not args.no_plot)
+    return 0
+
+
+def overrides_of(args: Namespace) -> list[str]:
+    """Return the scenario changes that the command line asks for; its own options go before ``--set``."""
+    named = {"seed": args.seed, "evaluator.workers": args.workers, "output.directory": args.output_dir}
+    changes = [f"{key}={json.dumps(value)}" for key, value in named.items() if value is not None]
+    return [*changes, *args.overrides]
+
+
+def command_to_go_on(args: Namespace) -> str:
+    """Return the command that goes on with this run."""
+    words = ["python", "-m", "hypermap_lite", "run", args.scenario]
+    options = {"--seed": args.seed, "--workers": args.workers, "--output-dir": args.output_dir}
+    for option, value in options.items():
+        words += [] if value is None else [option, str(value)]
+    for change in args.overrides:
+        words += ["--set", change]
+    return shlex.join(words)
+
+
+def _set_aside(folder: Path) -> None:
+    from hypermap_lite.history.run_folder import set_aside
+
+    kept = set_aside(folder)
+    if kept is not None:
+        print(f"note: the former run folder is now {kept}", file=sys.stderr)
+
+
+def _say_how_to_go_on(scenario: Scenario, args: Namespace, exit_status: int) -> int:
+    folder = Path(scenario.output.directory)
+    print(
+        f"stopped; all evaluations that were finished are saved in {folder}. To go on:\n  {command_to_go_on(args)}",
+        file=sys.stderr,
+    )
+    return exit_status
+
+
+def _print_result(scenario: Scenario, result: Result, *, has_picture: bool) -> None:
+    from hypermap_lite.cli.pareto import describe_front, front_as_table
+    from hypermap_lite.plotting.runs import load_runs
+
+    (run,) = load_runs([result.run_folder])
+    folder = _short(result.run_folder)
+    print(f"{scenario.application_name}: {count_states(result)}; the run ended because {result.stop_reason.value}\n")
+    print(front_as_table(run))
+    print(f"\n{describe_front(run)}")
+    for name in ("history.csv", "pareto.csv"):
+        print(folder / name)
+    for picture in _draw(result) if has_picture else ():
+        print(_short(picture))
+
+
+def count_states(result: Result) -> str:
+    """Return how many evaluations ended how: ``60 evaluations: 58 completed, 2 failed``."""
+    counts = Counter(evaluation.state.value for evaluation in result.evaluations)
+    parts = ", ".join(f"{n} {state}" for state, n in counts.most_common())
+    return f"{len(result.evaluations)} evaluation{'s' * (len(result.evaluations) != 1)}: {parts}"
+
+
+def _draw(result: Result) -> Sequence[Path]:
+    """Draw the front (one objective: its course) into the run folder; what keeps us from it is only a note."""
+    from hypermap_lite.errors import UsageError
+    from hypermap_lite.plotting import plot_function
+
+    kind = "objectives" if result.best is not None else "pareto"
+    try:
+        return plot_function(kind)([result.run_folder], result.run_folder / kind)
+    except UsageError as error:
+        print(f"note: no picture: {error}", file=sys.stderr)
+        return ()
+
+
+def _short(path: Path) -> Path:
+    """Return a path as seen from the working directory, if it is below it."""
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path

@@ -1,0 +1,200 @@
+"""Running a scenario from beginning to end, from Python as from the command line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hypermap_lite import assembly
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.evaluation.executors import Executor, InProcessExecutor, ProcessExecutor
+from hypermap_lite.evaluation.runner import Runner, StopReason
+from hypermap_lite.evaluation.worker_process import pickled
+from hypermap_lite.history.run_folder import RunFolder
+from hypermap_lite.objectives import Objective, reference_point_of, values_of
+from hypermap_lite.pareto import hypervolume, infer_reference_point
+from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.model import EvaluatorSpec, Scenario
+
+if TYPE_CHECKING:
+    from hypermap_lite.evaluation.evaluator import Evaluator
+    from hypermap_lite.evaluation.observer import RunObserver
+    from hypermap_lite.evaluation.outcome import Evaluation
+    from hypermap_lite.optimizers.base import Optimizer
+    from hypermap_lite.typing import Configuration, FloatArray
+
+Point = tuple["Configuration", Mapping[str, float]]
+"""A configuration and its objective values, as the user directed them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """What a run has found."""
+
+    evaluations: tuple[Evaluation, ...]
+    """All configurations, trial 0 first, whatever their state."""
+
+    pareto_front: tuple[Point, ...]
+    """The non-dominated ones, in the order of their trials; for one objective the best, with its ties."""
+
+    best: Point | None
+    """The best one of a single objective, the first of equals; None for several objectives."""
+
+    hypervolume: float | None
+    """Volume between front and reference point; None for a single objective or without a front."""
+
+    reference_point: Mapping[str, float] | None
+    """Corner the hypervolume is measured from: the scenario's, or inferred where an objective has none."""
+
+    run_folder: Path
+    stop_reason: StopReason
+
+
+def optimize(
+    scenario: str | Path | Mapping[str, Any],
+    function: Callable[..., Any] | None = None,
+    *,
+    workers: int | None = None,
+    output_directory: str | Path | None = None,
+    overrides: Sequence[str] = (),
+) -> Result:
+    """Run a scenario, or go on with it where it stopped.
+
+    Parameters
+    ----------
+    scenario
+        A scenario file, or its content as a mapping.
+    function
+        Black box to use instead of the scenario's: called with the configuration, and with ``seed=``, ``replicate=``
+        and ``trial=`` if it takes them; returns the objectives. It is called in this process, unless there are
+        several workers or a time limit: then it must be importable from a module.
+    workers
+        Calls at the same time, instead of the scenario's.
+    output_directory
+        Run folder, instead of the scenario's.
+    overrides
+        Other changes, as in ``budget.evaluations=30``.
+
+    Returns
+    -------
+    Result
+        Of the whole run, earlier sessions included.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario cannot be run as written.
+    UsageError
+        If the function cannot be sent to the worker processes that are asked for.
+    RunFolderError
+        If the folder is in use, holds another scenario's results, or cannot be written.
+    RepeatedFailureError, NoValidEvaluationError
+        If the black box keeps failing, or never gave a usable result.
+
+    Examples
+    --------
+    >>> result = optimize("branin.json", lambda x: (x["x1"] - 1) ** 2)  # doctest: +SKIP
+    >>> result.best  # doctest: +SKIP
+    """
+    changes = list(overrides)
+    if workers is not None:
+        changes.append(f"evaluator.workers={workers}")
+    if output_directory is not None:
+        changes.append(f"output.directory={json.dumps(str(output_directory))}")
+    return run_scenario(load_scenario(scenario, overrides=changes), function)
+
+
+def run_scenario(
+    scenario: Scenario,
+    function: Callable[..., Any] | None = None,
+    *,
+    observer: RunObserver | None = None,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> Result:
+    """Run a loaded scenario; see `optimize`.
+
+    Parameters
+    ----------
+    observer
+        Gets word of each step.
+    should_stop
+        Asked before every call of the black box; once true, the run ends in order.
+    """
+    evaluator, optimizer = _build(scenario, function)
+    spec = scenario.evaluator
+    folder = RunFolder(
+        scenario.output.directory,
+        space=optimizer.history.space,
+        objectives=scenario.objectives,
+        canonical=scenario.canonical,
+    )
+    with closing(_executor(evaluator, spec, is_given=function is not None)) as executor, folder:
+        runner = Runner(
+            optimizer=optimizer,
+            evaluator=evaluator,
+            executor=executor,
+            folder=folder,
+            budget=scenario.budget,
+            seed=scenario.seed,
+            replicates=spec.replicates,
+            max_consecutive_failures=spec.max_consecutive_failures,
+            should_stop=should_stop,
+            **({} if observer is None else {"observer": observer}),
+        )
+        return result_of(folder, runner.run())
+
+
+def _build(scenario: Scenario, function: Callable[..., Any] | None) -> tuple[Evaluator, Optimizer]:
+    """Make the black box and the optimizer; mistakes are shown with the file they stand in."""
+    try:
+        return assembly.build_evaluator(scenario, function), assembly.build_optimizer(scenario)
+    except ScenarioError as error:
+        raise error.within(scenario.origin_of(error.path)) from error
+
+
+def _executor(evaluator: Evaluator, spec: EvaluatorSpec, *, is_given: bool) -> Executor:
+    """Choose where calls happen.
+
+    A scenario's own black box always has processes of its own: its crash is not ours, and it dies with us. A function
+    that was passed is called right here where that is possible.
+    """
+    if is_given and spec.workers == 1 and spec.timeout_seconds is None:
+        return InProcessExecutor()
+    pickled(evaluator)  # an error before the first evaluation, not at it
+    return ProcessExecutor(spec.workers, spec.timeout_seconds)
+
+
+def result_of(folder: RunFolder, reason: StopReason) -> Result:
+    """Sum up an open run folder."""
+    objectives = folder.objectives
+    front = folder.pareto_front()
+    points: tuple[Point, ...] = tuple((e.configuration, e.values) for e in front)
+    Y = np.array([values_of(objectives, e.values) for e in front])
+    corner = _reference_point(objectives, Y) if len(objectives) > 1 and front else None
+    return Result(
+        evaluations=tuple(folder.evaluations),
+        pareto_front=points,
+        best=points[0] if len(objectives) == 1 and points else None,
+        hypervolume=None if corner is None else hypervolume(Y, corner),
+        reference_point=None
+        if corner is None
+        else {o.name: o.sign * float(c) for o, c in zip(objectives, corner, strict=True)},
+        run_folder=folder.path,
+        stop_reason=reason,
+    )
+
+
+def _reference_point(objectives: Sequence[Objective], Y: FloatArray) -> FloatArray:
+    """Return the scenario's reference point, inferred from the front for objectives without, to be minimized."""
+    stated = reference_point_of(objectives)
+    if stated is not None:
+        return stated
+    inferred = infer_reference_point(Y)
+    given = [np.nan if o.reference_point is None else o.sign * o.reference_point for o in objectives]
+    return np.where(np.isnan(given), inferred, given)

@@ -1,0 +1,181 @@
+"""Tests for run.py of the command line."""
+
+import csv
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from hypermap_lite.cli import main
+from tests.cli.scenarios import write_scenario
+
+
+def run(path, *options):
+    return main(["run", str(path), "--no-plot", *options])
+
+
+def history(folder):
+    with (folder / "history.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_results_go_to_stdout_and_the_story_to_stderr(tmp_path, capsys):
+    assert run(write_scenario(tmp_path)) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("demo: 8 evaluations: 8 completed; the run ended because the budget")
+    assert "f (minimize)" in out
+    assert "hypervolume" in out
+    assert "inferred reference point" in out
+    assert str(tmp_path / "run" / "history.csv") in out
+    assert err.count("\ntrial ") + err.startswith("trial ") == 8
+
+
+def test_picture_is_drawn_at_the_end(tmp_path, capsys):
+    assert main([str(write_scenario(tmp_path, budget={"evaluations": 4})), "-q"]) == 0
+    assert (tmp_path / "run" / "pareto.png").stat().st_size > 1000
+    assert "pareto.png" in capsys.readouterr().out
+
+
+def test_one_objective_ends_with_its_best_configuration_and_its_course(tmp_path, capsys):
+    path = write_scenario(tmp_path, objectives=[{"name": "f"}], budget={"evaluations": 4})
+    assert main([str(path), "-q"]) == 0
+    out = capsys.readouterr().out
+    table = out.split("\n\n")[1].splitlines()
+    assert len(table) == 2
+    assert table[1].split()[0] == min(history(tmp_path / "run"), key=lambda row: float(row["f"]))["trial"]
+    assert (tmp_path / "run" / "objectives.png").exists()
+
+
+def test_missing_matplotlib_is_only_a_note(tmp_path, capsys, monkeypatch):
+    for name in [name for name in sys.modules if name.split(".")[0] == "matplotlib" or ".plotting." in name]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main([str(write_scenario(tmp_path, budget={"evaluations": 2})), "-q"]) == 0
+    assert "note: no picture: " in capsys.readouterr().err
+
+
+def test_quiet_run_says_nothing_on_stderr(tmp_path, capsys):
+    assert run(write_scenario(tmp_path), "-q") == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_options_change_the_scenario(tmp_path):
+    folder = tmp_path / "elsewhere"
+    options = ["--seed", "5", "--workers", "2", "--output-dir", str(folder), "--set", "budget.evaluations=3"]
+    assert run(write_scenario(tmp_path), *options, "--set", "description=a: b") == 0
+    recorded = json.loads((folder / "scenario.json").read_text())
+    assert (recorded["seed"], recorded["evaluator"]["workers"], recorded["description"]) == (5, 2, "a: b")
+    assert len(history(folder)) == 3
+
+
+def test_second_run_goes_on_and_a_finished_one_only_reports(tmp_path, capsys):
+    path = write_scenario(tmp_path)
+    assert run(path, "--set", "budget.evaluations=3") == 0
+    assert run(path) == 0
+    assert run(path) == 0
+    assert len((tmp_path / "begun").read_text().splitlines()) == 8
+    assert len(history(tmp_path / "run")) == 8
+
+
+def test_other_scenario_in_the_folder_is_refused_with_the_difference(tmp_path, capsys):
+    path = write_scenario(tmp_path)
+    assert run(path) == 0
+    assert run(path, "--seed", "9") == 2
+    assert "$.seed: 0 there, 9 now" in capsys.readouterr().err
+
+
+def test_fresh_start_keeps_the_old_folder_aside(tmp_path, capsys):
+    path = write_scenario(tmp_path, budget={"evaluations": 2})
+    assert run(path) == 0
+    assert run(path, "--seed", "9", "--fresh") == 0
+    assert (tmp_path / "run.bak-1" / "history.csv").exists()
+    assert "is now" in capsys.readouterr().err
+
+
+def test_failing_first_trial_does_not_stop_the_run(tmp_path, capsys):
+    assert run(write_scenario(tmp_path, function="crash_first")) == 0
+    assert "8 evaluations: 7 completed, 1 failed" in capsys.readouterr().out
+    assert history(tmp_path / "run")[0]["error"] == "RuntimeError: cold start"
+
+
+def test_evaluator_that_keeps_failing_ends_with_status_4(tmp_path, capsys):
+    assert run(write_scenario(tmp_path, function="crash")) == 4
+    assert "last 5 configurations gave no usable result: RuntimeError: no such luck" in capsys.readouterr().err
+    assert len(history(tmp_path / "run")) == 5
+
+
+def test_run_without_a_result_ends_with_status_3(tmp_path, capsys):
+    assert run(write_scenario(tmp_path, function="crash", budget={"evaluations": 2})) == 3
+    assert "none of the 2 evaluations gave a usable result" in capsys.readouterr().err
+
+
+def test_folder_that_cannot_be_made_ends_with_status_2(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert run(write_scenario(tmp_path), "--output-dir", str(tmp_path / "file" / "run")) == 2
+    assert "cannot be written: Not a directory" in capsys.readouterr().err
+
+
+def test_evaluator_that_does_not_import_is_named_with_its_place(tmp_path, capsys):
+    path = write_scenario(tmp_path, evaluator={"type": "python", "function": "nowhere:f"})
+    assert run(path) == 2
+    error = capsys.readouterr().err
+    assert "$.evaluator.function: importing 'nowhere' failed: ModuleNotFoundError" in error
+    assert "scenario.json" in error
+
+
+@pytest.fixture
+def waiting(tmp_path):
+    """Start a run whose trial 2 waits for a file, and return once it waits."""
+    path = write_scenario(tmp_path, function="wait_for_a_file")
+    command = [sys.executable, "-m", "hypermap_lite", "run", str(path), "--no-plot"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        wait_for((tmp_path / "waiting_2").exists, process)
+        yield process
+        process.kill()
+
+
+def wait_for(condition, process):
+    deadline = time.monotonic() + 30
+    while not condition():
+        assert process.poll() is None, process.stderr.read()
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.01)
+
+
+def test_first_interrupt_lets_the_running_evaluation_finish(tmp_path, waiting):
+    waiting.send_signal(signal.SIGINT)
+    assert "waiting for the evaluations that are running" in read_until(waiting.stderr, "Ctrl-C")
+    (tmp_path / "go").write_text("")
+    out, err = waiting.communicate(timeout=30)
+    assert (waiting.returncode, out) == (130, "")
+    assert "To go on:\n  python -m hypermap_lite run " in err
+    assert [row["trial"] for row in history(tmp_path / "run")] == ["0", "1", "2"]
+
+
+def read_until(stream, word):
+    for line in stream:
+        if word in line:
+            return line
+    raise AssertionError(f"{word} never came")
+
+
+@pytest.mark.parametrize(
+    ("signals", "status"),
+    [([signal.SIGINT, signal.SIGINT], 130), ([signal.SIGTERM], 143), ([signal.SIGHUP], 129)],
+    ids=["two interrupts", "terminate", "hang up"],
+)
+def test_stop_at_once_kills_what_runs_and_keeps_what_is_finished(tmp_path, waiting, signals, status):
+    for number in signals[:-1]:
+        waiting.send_signal(number)
+        read_until(waiting.stderr, "Ctrl-C")
+    waiting.send_signal(signals[-1])
+    _, err = waiting.communicate(timeout=30)
+    assert waiting.returncode == status
+    assert "stopped; all evaluations that were finished are saved" in err
+    assert [row["trial"] for row in history(tmp_path / "run")] == ["0", "1"]
+    (tmp_path / "go").write_text("")
+    assert run(tmp_path / "scenario.json") == 0
+    assert len(history(tmp_path / "run")) == 8

@@ -1,0 +1,128 @@
+"""Tests for run.py: `optimize`, from Python."""
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import hypermap_lite
+from hypermap_lite import optimize
+from hypermap_lite.errors import RunFolderError, ScenarioError, UsageError
+from hypermap_lite.evaluation.runner import StopReason
+from hypermap_lite.history.lock import FolderLock
+from tests.evaluation.black_boxes import sphere
+
+SCENARIO = {
+    "application_name": "demo",
+    "input_parameters": {"x": {"parameter_type": "real", "values": [-2, 2]}},
+    "objectives": [{"name": "f", "reference_point": 5}, {"name": "g", "goal": "maximize"}],
+    "budget": {"evaluations": 6},
+    "design_of_experiment": {"number_of_samples": 2},
+    "optimizer": "random_search",
+}
+ONE = SCENARIO | {"objectives": [{"name": "f", "goal": "maximize"}]}
+
+
+def two(configuration):
+    return {"f": configuration["x"] ** 2, "g": configuration["x"]}
+
+
+def test_result_holds_evaluations_front_and_hypervolume(tmp_path):
+    result = optimize(SCENARIO, lambda c: two(c), output_directory=tmp_path)
+    assert [e.trial for e in result.evaluations] == list(range(6))
+    assert all(two(c) == values for c, values in result.pareto_front)
+    assert result.best is None
+    assert result.hypervolume > 0
+    assert result.reference_point["f"] == 5
+    assert (result.run_folder, result.stop_reason) == (tmp_path, StopReason.BUDGET)
+
+
+def test_best_of_one_objective_follows_its_direction(tmp_path):
+    result = optimize(ONE, lambda c: c["x"], output_directory=tmp_path)
+    configuration, values = result.best
+    assert values["f"] == configuration["x"] == max(e.configuration["x"] for e in result.evaluations)
+    assert (result.hypervolume, result.reference_point) == (None, None)
+
+
+def test_second_call_goes_on_and_third_only_reads(tmp_path):
+    calls = []
+
+    def f(configuration):
+        calls.append(configuration)
+        return configuration["x"]
+
+    optimize(ONE, f, output_directory=tmp_path, overrides=["budget.evaluations=4"])
+    optimize(ONE, f, output_directory=tmp_path)
+    result = optimize(ONE, f, output_directory=tmp_path)
+    assert len(calls) == 6
+    assert [e.configuration for e in result.evaluations] == calls
+
+
+def test_importable_function_runs_in_workers_with_the_same_rows(tmp_path):
+    def rows(folder):
+        with (folder / "history.csv").open(newline="") as file:
+            return [(row["x"], row["f"], row["g"]) for row in csv.DictReader(file)]
+
+    optimize(SCENARIO, sphere, output_directory=tmp_path / "here")
+    optimize(SCENARIO, sphere, output_directory=tmp_path / "there", workers=2)
+    assert rows(tmp_path / "here") == rows(tmp_path / "there")
+
+
+@pytest.mark.parametrize("options", [{"workers": 2}, {"overrides": ["evaluator.timeout_seconds=9"]}])
+def test_local_function_in_workers_is_refused_before_anything_is_written(tmp_path, options):
+    with pytest.raises(UsageError, match="cannot be sent to a worker process"):
+        optimize(SCENARIO, lambda c: two(c), output_directory=tmp_path / "run", **options)
+    assert not (tmp_path / "run").exists()
+
+
+def test_scenario_without_an_evaluator_needs_a_function(tmp_path):
+    with pytest.raises(ScenarioError, match="names no evaluator"):
+        optimize(SCENARIO, output_directory=tmp_path)
+
+
+def test_interrupt_in_the_function_leaves_a_folder_to_go_on_with(tmp_path):
+    def interrupt(configuration, trial):
+        if trial == 3:
+            raise KeyboardInterrupt
+        return two(configuration)
+
+    with pytest.raises(KeyboardInterrupt):
+        optimize(SCENARIO, interrupt, output_directory=tmp_path)
+    assert len(optimize(SCENARIO, lambda c: two(c), output_directory=tmp_path).evaluations) == 6
+
+
+def test_folder_in_use_is_refused(tmp_path):
+    with FolderLock(tmp_path), pytest.raises(RunFolderError, match="another process"):
+        optimize(SCENARIO, two, output_directory=tmp_path)
+
+
+def test_public_names_are_imported_when_used():
+    code = (
+        "import sys, hypermap_lite; print('numpy' in sys.modules); hypermap_lite.State; print('numpy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "True"]
+
+
+@pytest.mark.parametrize("name", [n for n in hypermap_lite.__all__ if not n.startswith("_")])
+def test_every_public_name_exists(name):
+    assert getattr(hypermap_lite, name).__name__ == name
+    assert name in dir(hypermap_lite)
+
+
+def test_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'optimise'"):
+        hypermap_lite.optimise  # noqa: B018
+
+
+def test_script_needs_no_main_guard(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from hypermap_lite import optimize\n"
+        "def f(configuration): return configuration['x']\n"
+        f"print(len(optimize({ONE!r}, f, output_directory={str(tmp_path / 'run')!r}).evaluations))\n"
+    )
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True, cwd=Path.cwd())
+    assert done.stdout == "6\n"
