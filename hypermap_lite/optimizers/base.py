@@ -4,14 +4,30 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
+from functools import cache
 from time import process_time
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.history.history import History
+
+
+@cache
+def _thread_pools() -> ThreadpoolController:
+    return ThreadpoolController()
+
+
+def single_threaded() -> AbstractContextManager[object]:
+    """Return a context in which linear algebra uses one thread.
+
+    Matrices of a few hundred rows gain nothing from more, and lose a factor of several where threads compete.
+    """
+    return _thread_pools().limit(limits=1)
 
 
 class Optimizer(ABC):
@@ -44,14 +60,15 @@ class Optimizer(ABC):
         if n < 1:
             raise UsageError(f"ask({n}): the number of suggestions must be at least 1")
         suggestions: list[Suggestion] = []
-        for _ in range(n):
-            start = process_time()
-            suggestion = self._suggest(len(self.history) + len(self.pending))
-            if suggestion is None:
-                break
-            suggestion = replace(suggestion, seconds=process_time() - start)
-            self._pending[suggestion.trial] = suggestion
-            suggestions.append(suggestion)
+        with single_threaded():
+            for _ in range(n):
+                start = process_time()
+                suggestion = self._suggest(len(self.history) + len(self.pending))
+                if suggestion is None:
+                    break
+                suggestion = replace(suggestion, seconds=process_time() - start)
+                self._pending[suggestion.trial] = suggestion
+                suggestions.append(suggestion)
         return suggestions
 
     def tell(self, evaluations: Sequence[Evaluation]) -> None:

@@ -89,11 +89,11 @@ class Forest:
         return cls(regressor, means, variances, offset, scale)
 
     def per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return mean and standard deviation of the leaf of each of T trees at n points, both (T, n)."""
+        """Return mean and standard deviation, both (T, n), of the leaf of each of T trees, in scaled outputs."""
         leaves = self.regressor.apply(X).T
         mean = np.array([m[index] for m, index in zip(self.leaf_means, leaves, strict=True)])
         variance = np.array([v[index] for v, index in zip(self.leaf_variances, leaves, strict=True)])
-        return self.offset + self.scale * mean, self.scale * np.sqrt(variance)
+        return mean, np.sqrt(variance)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,14 +116,28 @@ class ForestPosterior:
         """False: a forest is piecewise constant."""
         return False
 
-    def _per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+    @property
+    def _offset(self) -> FloatArray:
+        return np.array([forest.offset for forest in self.forests])
+
+    @property
+    def _scale(self) -> FloatArray:
+        return np.array([forest.scale for forest in self.forests])
+
+    def _scaled_per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         answers = [forest.per_tree(X) for forest in self.forests]
         return np.stack([a[0] for a in answers], axis=2), np.stack([a[1] for a in answers], axis=2)
 
+    def _per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return mean and standard deviation of each of T trees, both (T, n, m)."""
+        mean, std = self._scaled_per_tree(X)
+        return self._offset + self._scale * mean, self._scale * std
+
     def predict(self, X: FloatArray) -> Prediction:
         """Predict m objectives at n points, shape (n, d), by the total variance over the trees."""
-        mean, std = self._per_tree(X)
-        return Prediction(mean=mean.mean(axis=0), std=np.sqrt((std**2).mean(axis=0) + mean.var(axis=0)))
+        mean, std = self._scaled_per_tree(X)
+        total = np.sqrt((std**2).mean(axis=0) + mean.var(axis=0))
+        return Prediction(mean=self._offset + self._scale * mean.mean(axis=0), std=self._scale * total)
 
     def field(self, X: FloatArray) -> Conditional:
         """Predict as `predict` does, as a field with one scenario."""

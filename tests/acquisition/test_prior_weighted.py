@@ -1,0 +1,67 @@
+"""piBO."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite.acquisition import PriorWeighted, PriorWeighting
+from hypermap_lite.acquisition.improvement import LinearImprovement
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.priors import AsJoint, GaussianPrior, ProductPrior
+from hypermap_lite.space import RealParameter
+from tests.acquisition.toy_field import toy_field
+
+X = np.random.default_rng(0).random((6, 2))
+
+
+def prior(scale: float = 1.0) -> ProductPrior:
+    axis = RealParameter(name="x", low=0, high=scale)
+    return ProductPrior(2, (((0,), AsJoint(GaussianPrior(mean=0.3 * scale, std=0.1 * scale).on(axis))),))
+
+
+def inner() -> LinearImprovement:
+    return LinearImprovement(
+        field=toy_field(4),
+        incumbents=np.zeros((4, 2)),
+        weights=np.array([0.5, 0.5]),
+        scale=np.ones(2),
+        is_differentiable=True,
+    )
+
+
+def test_without_floor_it_is_the_acquisition_times_the_density_to_the_power_beta_over_n() -> None:
+    weight = PriorWeighting(beta=5.0).weight(n=2, model_budget=100)
+    scorer = PriorWeighted(inner=inner(), prior=prior(), weight=weight, floor=0.0)
+    relative = np.exp(prior().log_density(X) - prior().log_peak())
+    assert np.exp(scorer(X)) == pytest.approx(np.exp(inner()(X)) * relative**2.5)
+
+
+def test_the_floor_is_relative_to_the_peak() -> None:
+    scorer = PriorWeighted(inner=inner(), prior=prior(), weight=1.0, floor=0.05)
+    far, peak = np.array([[1.0, 0.5]]), np.array([[0.3, 0.5]])
+    assert scorer.log_relative_density(far)[0] == pytest.approx(np.log(0.05), abs=1e-6)
+    assert scorer.log_relative_density(peak)[0] == pytest.approx(0.0)
+
+
+def test_units_play_no_part() -> None:
+    metres = PriorWeighted(inner=inner(), prior=prior(), weight=1.0, floor=0.05)
+    millimetres = PriorWeighted(inner=inner(), prior=prior(1000.0), weight=1.0, floor=0.05)
+    assert metres(X) == pytest.approx(millimetres(X))
+
+
+def test_gradient_agrees_with_finite_differences() -> None:
+    scorer = PriorWeighted(inner=inner(), prior=prior(), weight=2.0, floor=0.05)
+    score, gradient = scorer.with_gradient(X)
+    assert score == pytest.approx(scorer(X))
+    for j, e in enumerate(1e-6 * np.eye(2)):
+        assert gradient[:, j] == pytest.approx((scorer(X + e) - scorer(X - e)) / 2e-6, rel=1e-4, abs=1e-5)
+
+
+def test_the_default_strength_is_a_tenth_of_the_model_based_budget() -> None:
+    assert PriorWeighting().weight(n=1, model_budget=48) == pytest.approx(4.8)
+    assert PriorWeighting().weight(n=48, model_budget=48) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("options", [{"beta": -1}, {"floor": 1.0}, {"floor": -0.1}])
+def test_impossible_options_are_refused(options: dict) -> None:
+    with pytest.raises(ScenarioError, match=next(iter(options))):
+        PriorWeighting(**options)

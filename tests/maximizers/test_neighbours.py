@@ -1,0 +1,63 @@
+"""One-exchange steps."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite.maximizers.neighbours import axis_neighbours, climb, neighbours
+from hypermap_lite.space import CategoricalParameter, IntegerParameter, RealParameter, SearchSpace
+
+SPACE = SearchSpace(
+    (
+        RealParameter(name="r", low=0, high=1),
+        IntegerParameter(name="n", low=0, high=99),
+        CategoricalParameter(name="c", values=("a", "b", "c")),
+    )
+)
+
+
+def test_steps_go_in_both_directions() -> None:
+    real, integer = SPACE.parameters[:2]
+    around = axis_neighbours(real, 0.5)
+    assert (around < 0.5).sum() == (around > 0.5).sum() == 5
+    values = integer.decode(axis_neighbours(integer, float(integer.encode([50])[0])))
+    assert sorted(values) == [34, 42, 46, 48, 49, 51, 52, 54, 58, 66]
+
+
+def test_steps_stay_in_the_space() -> None:
+    integer = SPACE.parameters[1]
+    assert min(integer.decode(axis_neighbours(integer, float(integer.encode([0])[0])))) == 1
+    assert axis_neighbours(SPACE.parameters[0], 0.0).min() == 0
+
+
+def test_all_other_categories_are_neighbours() -> None:
+    categorical = SPACE.parameters[2]
+    assert categorical.decode(axis_neighbours(categorical, 0.5)) == ["a", "c"]
+
+
+def test_a_very_large_integer_range_has_few_neighbours() -> None:
+    parameter = IntegerParameter(name="n", low=0, high=10**9)
+    values = parameter.decode(axis_neighbours(parameter, 0.5))
+    assert len(values) == 14
+    assert max(values) - min(values) == 512
+
+
+def test_neighbours_differ_along_one_axis() -> None:
+    x = SPACE.encode([{"r": 0.5, "n": 50, "c": "b"}])[0]
+    around = neighbours(SPACE, x, np.array([False, True, True]))
+    assert ((around != x).sum(axis=1) == 1).all()
+    assert len(around) == 12
+
+
+def test_climbing_ends_at_the_top() -> None:
+    target = SPACE.encode([{"r": 0.5, "n": 77, "c": "a"}])[0]
+
+    class Distance:
+        is_differentiable = False
+
+        def __call__(self, X: np.ndarray) -> np.ndarray:
+            return -np.abs(X - target).sum(axis=1)
+
+    start = SPACE.encode([{"r": 0.5, "n": 3, "c": "c"}])[0]
+    x, score = climb(SPACE, Distance(), start, np.array([False, True, True]))
+    assert x == pytest.approx(target)
+    assert score == pytest.approx(0.0)

@@ -1,0 +1,102 @@
+"""Bayesian optimization."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite.acquisition import ACQUISITIONS
+from hypermap_lite.design import DESIGNS
+from hypermap_lite.maximizers import MAXIMIZERS
+from hypermap_lite.optimizers.bayesian import milestones
+from hypermap_lite.pareto.hypervolume import hypervolume
+from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS
+from hypermap_lite.surrogates import SURROGATES
+from tests.optimizers.runs import configurations, run, scenario_of
+
+GAUSSIANS = {
+    "a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.5, "std": 0.2}},
+    "b": {"parameter_type": "real", "values": [-5, 5], "prior": {"type": "gaussian", "mean": 1, "std": 2}},
+}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        *[pytest.param({"acquisition": name}, id=name) for name in ACQUISITIONS],
+        *[pytest.param({"surrogate": name}, id=name) for name in SURROGATES],
+        *[pytest.param({"maximizer": name}, id=name) for name in MAXIMIZERS],
+        *[pytest.param({"design_of_experiment": {"type": name, "number_of_samples": 5}}, id=name) for name in DESIGNS],
+        *[pytest.param({"acquisition": {"scalarization": name}}, id=name) for name in SCALARIZATIONS],
+        pytest.param(
+            {"acquisition": {"weights": {"type": "bounding_box", "limits": {"near": [0, 0.2], "far": [-0.5, 0]}}}},
+            id="bounding_box",
+        ),
+        pytest.param({"preset": "paper", "input_parameters": GAUSSIANS}, id="paper"),
+    ],
+)
+def test_every_member_of_every_family_drives_a_run(changes: dict) -> None:
+    optimizer = run(scenario_of(**changes), 8, batch=2)
+    assert len(optimizer.history) == 8
+    phases = [e.suggestion.phase for e in optimizer.history]
+    n_design = phases.count("design")
+    assert phases == ["design"] * n_design + ["model"] * (8 - n_design)
+    assert all(np.isfinite(e.suggestion.acquisition_value) for e in list(optimizer.history)[n_design:])
+
+
+def test_weight_samplings_are_covered_above() -> None:
+    assert set(WEIGHTS) == {"dirichlet", "bounding_box"}
+
+
+@pytest.mark.parametrize("n_objectives", [1, 2])
+def test_rescaling_a_parameter_changes_no_suggestion(n_objectives: int) -> None:
+    def scenario(factor: float) -> dict:
+        length = {"parameter_type": "real", "values": [0, 0.08 * factor]}
+        length["prior"] = {"type": "gaussian", "mean": 0.02 * factor, "std": 0.03 * factor}
+        objectives = [{"name": "y"}, {"name": "z"}][:n_objectives]
+        return scenario_of(input_parameters={"length": length, "b": GAUSSIANS["b"]}, objectives=objectives)
+
+    def function(factor: float):
+        return lambda c: {"y": (c["length"] / factor - 0.05) ** 2 * 1e3, "z": (c["b"] - 1) ** 2}
+
+    metres = configurations(run(scenario(1.0), 10, function=function(1.0)))
+    millimetres = configurations(run(scenario(1000.0), 10, function=function(1000.0)))
+    assert [c["length"] * 1000 for c in metres] == pytest.approx([c["length"] for c in millimetres], rel=1e-6)
+    assert [c["b"] for c in metres] == pytest.approx([c["b"] for c in millimetres], rel=1e-6)
+
+
+def test_the_prior_decays_with_the_number_of_model_based_suggestions() -> None:
+    acquisition = {"prior_weighting": {"method": "pibo", "beta": 6.0}}
+    optimizer = run(scenario_of(input_parameters=GAUSSIANS, acquisition=acquisition), 9, batch=2)
+    weights = [e.suggestion.prior_weight for e in optimizer.history]
+    assert weights == [None] * 5 + [6.0, 3.0, 2.0, 1.5]
+
+
+def test_without_prior_there_is_no_prior_weight() -> None:
+    assert all(e.suggestion.prior_weight is None for e in run(scenario_of(), 7).history)
+
+
+def test_prior_weighting_can_be_switched_off() -> None:
+    off = scenario_of(input_parameters=GAUSSIANS, acquisition={"prior_weighting": {"method": "none"}})
+    assert all(e.suggestion.prior_weight is None for e in run(off, 7).history)
+
+
+def test_a_strong_prior_pulls_the_suggestions() -> None:
+    strong = {"prior_weighting": {"method": "pibo", "beta": 1000.0, "floor": 1e-6}}
+    narrow = {
+        **GAUSSIANS,
+        "a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.9, "std": 0.02}},
+    }
+    optimizer = run(scenario_of(input_parameters=narrow, acquisition=strong), 9)
+    assert [c["a"] for c in configurations(optimizer)[5:]] == pytest.approx([0.9] * 4, abs=0.03)
+
+
+def test_it_spreads_along_a_front_better_than_random_search() -> None:
+    def volume(kind: str) -> float:
+        Y = run(scenario_of(optimizer=kind, budget={"evaluations": 25}), 25).history.Y()
+        return hypervolume(Y, np.array([1.0, 1.0]))
+
+    assert volume("bayesian") > volume("random_search") + 0.02
+
+
+def test_milestones_depend_on_nothing_but_the_count() -> None:
+    assert list(milestones(8)) == []
+    assert list(milestones(30)) == [8, 12, 18, 27]

@@ -1,0 +1,31 @@
+"""The trials before there is a model."""
+
+from hypermap_lite.design import RandomSampling, Sobol
+from hypermap_lite.optimizers.initial import InitialPhase
+from hypermap_lite.priors import ProductPrior
+from hypermap_lite.space import IntegerParameter, RealParameter, SearchSpace
+
+LINE = SearchSpace((RealParameter(name="x", low=0, high=1, default=0.5),))
+
+
+def test_the_default_counts_as_one_of_the_samples() -> None:
+    phase = InitialPhase(LINE, ProductPrior(1), Sobol(), 4, seed=0)
+    assert len(phase) == 4
+    assert phase.suggestion(0).configuration == {"x": 0.5}
+    assert [phase.suggestion(i).phase for i in range(4)] == ["default", "design", "design", "design"]
+
+
+def test_the_default_is_not_repeated_by_the_design() -> None:
+    space = SearchSpace((IntegerParameter(name="n", low=0, high=2, default=1),))
+    phase = InitialPhase(space, ProductPrior(1), RandomSampling(), 10, seed=0)
+    assert sorted(phase.suggestion(i).configuration["n"] for i in range(len(phase))) == [0, 1, 2]
+
+
+def test_there_may_be_no_design() -> None:
+    bare = SearchSpace((RealParameter(name="x", low=0, high=1),))
+    assert len(InitialPhase(bare, ProductPrior(1), Sobol(), 0, seed=0)) == 0
+
+
+def test_a_longer_design_of_the_same_seed_is_another_function_of_the_scenario_alone() -> None:
+    a, b = (InitialPhase(LINE, ProductPrior(1), Sobol(), 6, seed=7) for _ in range(2))
+    assert [a.suggestion(i) for i in range(6)] == [b.suggestion(i) for i in range(6)]

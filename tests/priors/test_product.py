@@ -1,0 +1,46 @@
+"""The whole belief."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite.priors import AsJoint, GaussianPrior, JointMixturePrior, ProductPrior, WeightsPrior
+from hypermap_lite.space import CategoricalParameter, RealParameter
+
+A, B = RealParameter(name="a", low=0, high=1), RealParameter(name="b", low=0, high=2)
+C = CategoricalParameter(name="c", values=("x", "y"))
+MIXTURE = JointMixturePrior(components=[{"mean": {"b": 0.4, "a": 0.1}, "std": {"b": 0.2, "a": 0.1}}])
+PRIOR = ProductPrior(
+    4,
+    (((1, 0), MIXTURE.on([B, A])), ((3,), AsJoint(WeightsPrior(weights=[1, 3]).on(C)))),
+)
+
+
+def test_log_density_is_the_sum_over_the_factors() -> None:
+    X = np.random.default_rng(0).random((5, 4))
+    alone = GaussianPrior(mean=0.1, std=0.1).on(A).log_density(X[:, 0])
+    alone = alone + GaussianPrior(mean=0.4, std=0.2).on(B).log_density(X[:, 1])
+    alone = alone + WeightsPrior(weights=[1, 3]).on(C).log_density(X[:, 3])
+    assert PRIOR.log_density(X) == pytest.approx(alone)
+
+
+def test_axes_without_prior_are_uniform() -> None:
+    X = PRIOR.sample(5000, np.random.default_rng(0))
+    assert np.histogram(X[:, 2], bins=4)[0] == pytest.approx(np.full(4, 1250), abs=120)
+    assert np.mean(X[:, 3] > 0.5) == pytest.approx(0.75, abs=0.03)
+
+
+def test_the_product_integrates_to_one() -> None:
+    X = np.random.default_rng(0).random((400_000, 4))
+    assert np.exp(PRIOR.log_density(X)).mean() == pytest.approx(1.0, abs=0.02)
+
+
+def test_the_peak_is_at_the_factors_modes() -> None:
+    assert PRIOR.mode() == pytest.approx([0.1, 0.2, 0.5, 0.75])
+    assert PRIOR.log_peak() >= PRIOR.log_density(PRIOR.sample(1000, np.random.default_rng(0))).max()
+
+
+def test_no_factor_means_no_preference() -> None:
+    empty = ProductPrior(2)
+    assert empty.is_uniform
+    assert not PRIOR.is_uniform
+    assert np.array_equal(empty.log_density(np.zeros((3, 2))), np.zeros(3))

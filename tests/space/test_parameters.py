@@ -1,0 +1,101 @@
+"""What holds for every type of parameter."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.space import PARAMETERS, IntegerParameter, OrdinalParameter, Parameter, RealParameter
+from tests.strategies import integers, parameters
+
+codes = st.lists(st.floats(0, 1), min_size=1, max_size=20).map(np.array)
+
+
+@given(parameters(), codes)
+def test_decoded_values_are_legal_and_encode_and_decode_exactly(parameter: Parameter, u: np.ndarray) -> None:
+    values = parameter.decode(u)
+    assert all(parameter.contains(value) for value in values)
+    assert parameter.decode(parameter.encode(values)) == values
+
+
+@given(parameters(), codes)
+def test_codes_of_values_stay_in_the_unit_interval_and_close_to_where_they_came_from(
+    parameter: Parameter, u: np.ndarray
+) -> None:
+    again = parameter.encode(parameter.decode(u))
+    assert np.all((again >= 0) & (again <= 1))
+    if parameter.n_levels is None:
+        assert np.allclose(again, u, atol=1e-6)  # thirteen digits of a narrow range far from zero
+
+
+@given(parameters(), codes)
+def test_snapped_codes_are_those_of_the_decoded_values(parameter: Parameter, u: np.ndarray) -> None:
+    if parameter.n_levels is not None:
+        assert np.array_equal(parameter.snap(u), parameter.encode(parameter.decode(u)))
+
+
+@given(integers(), st.floats(0, 1))
+def test_integers_never_leave_their_bounds(parameter: IntegerParameter, u: float) -> None:
+    (value,) = parameter.decode(np.array([u]))
+    assert isinstance(value, int)
+    assert parameter.low <= value <= parameter.high
+
+
+@given(parameters())
+def test_level_codes_lie_inside_their_bins_which_fill_the_interval(parameter: Parameter) -> None:
+    if parameter.n_levels is None:
+        return
+    edges, level_codes = parameter.bin_edges(), parameter.level_codes()
+    assert edges[0] == 0
+    assert edges[-1] == 1
+    assert np.all(edges[:-1] < level_codes)
+    assert np.all(level_codes < edges[1:])
+
+
+def test_every_integer_of_a_linear_axis_is_equally_likely() -> None:
+    parameter = IntegerParameter(name="n", low=0, high=15)
+    values = parameter.decode(np.linspace(0, 1, 16_001)[:-1])
+    assert sorted(set(values)) == list(range(16))
+    assert np.ptp(np.bincount(values)) <= 2
+
+
+def test_a_log_axis_places_decades_equally() -> None:
+    parameter = RealParameter(name="r", low=1e-4, high=1.0, log=True)
+    assert np.allclose(parameter.encode([1e-4, 1e-3, 1e-2, 1e-1, 1.0]), [0, 0.25, 0.5, 0.75, 1])
+
+
+def test_ordinal_levels_are_sorted_and_equally_spaced() -> None:
+    parameter = OrdinalParameter(name="o", values=(8.0, 1.0, 2.0))
+    assert parameter.decode(np.array([0.1, 0.5, 0.9])) == [1.0, 2.0, 8.0]
+
+
+def test_a_large_integer_range_is_not_enumerated() -> None:
+    parameter = IntegerParameter(name="n", low=0, high=10**12)
+    assert parameter.decode(np.array([0.0, 0.5, 1.0])) == [0, 5 * 10**11, 10**12]
+
+
+@pytest.mark.parametrize("value", [True, "2", None, float("nan"), 11, -1])
+def test_illegal_values_are_not_contained(value: object) -> None:
+    assert not IntegerParameter(name="n", low=0, high=10).contains(value)
+    assert not RealParameter(name="r", low=0, high=10).contains(value)
+
+
+@pytest.mark.parametrize(
+    ("kind", "options", "message"),
+    [
+        pytest.param("real", {"low": 2, "high": 1}, "reversed", id="reversed"),
+        pytest.param("real", {"low": 1, "high": 1}, "equal", id="equal"),
+        pytest.param("real", {"low": "a", "high": 1}, "finite number", id="text"),
+        pytest.param("real", {"low": 0, "high": float("inf")}, "finite number", id="infinite"),
+        pytest.param("real", {"low": 0, "high": 1, "log": True}, "not positive", id="log-from-zero"),
+        pytest.param("integer", {"low": 0.5, "high": 3}, "not whole", id="half"),
+        pytest.param("ordinal", {"values": (1.0,)}, "no choice", id="single-level"),
+        pytest.param("ordinal", {"values": (1.0, 2.0, 1.0)}, "twice", id="repeated-level"),
+        pytest.param("categorical", {"values": ()}, "no choice", id="empty"),
+        pytest.param("categorical", {"values": ("a", "a")}, "twice", id="repeated-category"),
+    ],
+)
+def test_illegal_ranges_are_refused(kind: str, options: dict, message: str) -> None:
+    with pytest.raises(ScenarioError, match=message):
+        PARAMETERS[kind](name="x", **options)

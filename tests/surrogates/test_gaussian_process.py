@@ -1,0 +1,152 @@
+"""Predictions of the Gaussian process."""
+
+import numpy as np
+import pytest
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+
+from hypermap_lite.surrogates import GaussianProcess
+from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior, quasi_normal
+from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters
+from hypermap_lite.surrogates.process import Process, Standardized
+
+RNG = np.random.default_rng(0)
+X = RNG.random((20, 2))
+Z = RNG.random((7, 2))
+Y = np.column_stack([np.sin(5 * X[:, 0]) + X[:, 1], 100 * (X[:, 1] - 0.3) ** 2 + 40])
+Y = Y + np.array([0.05, 1.0]) * RNG.standard_normal(Y.shape)
+ORDERED = np.ones(2, dtype=bool)
+
+
+def fit(X: np.ndarray, Y: np.ndarray, **options: bool) -> GaussianProcessPosterior:
+    posterior = GaussianProcess(**options).fit(X, Y, is_ordered=np.ones(X.shape[1], bool), rng=np.random.default_rng(0))
+    assert isinstance(posterior, GaussianProcessPosterior)
+    return posterior
+
+
+def test_predictions_equal_scikit_learns_at_equal_hyperparameters() -> None:
+    h = Hyperparameters(np.array([0.4, 0.9]), 1.3, 0.02)
+    output = Standardized.of(Y[:, 0])
+    process = Process.condition(X, output, h, ORDERED)
+    kernel = ConstantKernel(1.3) * Matern(h.lengthscales, nu=2.5) + WhiteKernel(0.02)
+    oracle = GaussianProcessRegressor(kernel, alpha=0, optimizer=None).fit(X, output.values - process.mean)
+    mean, std = oracle.predict(Z, return_std=True)
+    prediction = GaussianProcessPosterior(processes=(process,)).predict(Z)
+    assert prediction.mean[:, 0] == pytest.approx(output.offset + output.scale * (mean + process.mean), rel=1e-8)
+    noise_free = np.sqrt(std**2 - 0.02)
+    assert prediction.std[:, 0] == pytest.approx(output.scale * noise_free, rel=1e-6)
+
+
+def test_objectives_are_modelled_independently() -> None:
+    both, second = fit(X, Y), fit(X, Y[:, 1:])
+    assert both.predict(Z).mean[:, 1] == pytest.approx(second.predict(Z).mean[:, 0])
+
+
+def test_shifting_and_scaling_outputs_shifts_and_scales_predictions() -> None:
+    a, b = fit(X, Y[:, :1]).predict(Z), fit(X, 1000 * Y[:, :1] - 7).predict(Z)
+    assert b.mean == pytest.approx(1000 * a.mean - 7, rel=1e-4)
+    assert b.std == pytest.approx(1000 * a.std, rel=1e-3)
+
+
+def test_fantasies_average_to_the_posterior() -> None:
+    posterior = fit(X, Y)
+    fantasies = posterior.fantasies(np.empty((0, 2)), 2048, np.random.default_rng(1))
+    conditional, prediction = fantasies.field(Z), posterior.predict(Z)
+    scale = Y.std(axis=0)
+    assert conditional.mean.mean(axis=0) / scale == pytest.approx(prediction.mean / scale, abs=2e-3)
+    total = np.sqrt(conditional.mean.var(axis=0) + conditional.std[0] ** 2)
+    assert total / scale == pytest.approx(prediction.std / scale, abs=5e-3)
+
+
+def test_each_fantasy_goes_through_its_own_values() -> None:
+    fantasies = fit(X, Y).fantasies(Z[:2], 8, np.random.default_rng(1))
+    conditional = fantasies.field(np.vstack([X, Z[:2]]))
+    assert conditional.mean / Y.std(axis=0) == pytest.approx(fantasies.values / Y.std(axis=0), abs=1e-3)
+    assert (conditional.std / Y.std(axis=0)).max() < 1e-2
+
+
+def test_pending_points_are_drawn_with_their_uncertainty() -> None:
+    posterior = fit(X, Y)
+    drawn = posterior.fantasies(Z[:1], 2048, np.random.default_rng(1)).values[:, -1, :]
+    assert drawn.std(axis=0) == pytest.approx(posterior.predict(Z[:1]).std[0], rel=0.05)
+
+
+def test_a_believer_keeps_the_mean_and_loses_the_uncertainty_at_the_pending_point() -> None:
+    posterior = fit(X, Y)
+    believer = posterior.believe(Z[:1])
+    assert believer.predict(Z).mean == pytest.approx(posterior.predict(Z).mean, rel=1e-2)
+    assert np.all(believer.predict(Z[:1]).std < posterior.predict(Z[:1]).std)
+
+
+def test_sample_paths_average_to_the_posterior() -> None:
+    posterior = fit(X, Y)
+    paths = np.array([posterior.sample_path(np.random.default_rng(i), 256)(Z).mean[0] for i in range(300)])
+    prediction, scale = posterior.predict(Z), Y.std(axis=0)
+    assert paths.mean(axis=0) / scale == pytest.approx(prediction.mean / scale, abs=0.05)
+    assert paths.std(axis=0) / scale == pytest.approx(prediction.std / scale, abs=0.06)
+
+
+@pytest.mark.parametrize("kind", ["field", "fantasies", "path"])
+@pytest.mark.parametrize("categorical", [False, True])
+def test_gradients_agree_with_finite_differences(kind: str, categorical: bool) -> None:
+    is_ordered = np.array([True, not categorical])
+    A, B = X.copy(), Z.copy()
+    if categorical:
+        A[:, 1], B[:, 1] = np.where(A[:, 1] < 0.5, 0.25, 0.75), np.where(B[:, 1] < 0.5, 0.25, 0.75)
+    posterior = GaussianProcess().fit(A, Y, is_ordered=is_ordered, rng=np.random.default_rng(0))
+    field = {
+        "field": posterior.field,
+        "fantasies": posterior.fantasies(B[:2], 4, np.random.default_rng(1)).field,
+        "path": posterior.sample_path(np.random.default_rng(1), 64),
+    }[kind]
+    c = field(B)
+    by_mean, by_std = RNG.standard_normal(c.mean.shape), RNG.standard_normal(c.std.shape)
+    assert c.pullback is not None
+    gradient = c.pullback(by_mean, by_std)
+    step = np.array([1e-6, 0.0])
+    above, below = field(B + step), field(B - step)
+    numeric = ((above.mean - below.mean) * by_mean).sum(axis=(0, 2)) + ((above.std - below.std) * by_std).sum(
+        axis=(0, 2)
+    )
+    assert gradient[:, 0] == pytest.approx(numeric / 2e-6, rel=1e-3, abs=1e-3 * Y.std())
+    if categorical:
+        assert np.array_equal(gradient[:, 1], np.zeros(len(B)))
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("inputs", "outputs"),
+    [
+        pytest.param(X[:1], Y[:1], id="single"),
+        pytest.param(X, np.full((20, 1), 3.0), id="constant"),
+        pytest.param(X, np.zeros((20, 1)), id="zero"),
+        pytest.param(np.repeat(X[:4], 5, axis=0), Y[:, :1], id="duplicates"),
+        pytest.param(np.repeat(X[:1], 20, axis=0), Y[:, :1], id="one-point-many-times"),
+        pytest.param(X, Y[:, :1] * 1e300, id="huge"),
+        pytest.param(X, Y[:, :1] * 1e-300, id="tiny"),
+        pytest.param(X, np.where(np.arange(20) == 3, 1e12, Y[:, 0])[:, None], id="outlier"),
+        pytest.param(X * 1e-9 + 0.5, Y[:, :1], id="clustered"),
+        pytest.param(RNG.random((20, 30)), Y, id="more-axes-than-points"),
+    ],
+)
+@pytest.mark.parametrize("noise", [True, False])
+def test_difficult_data_give_finite_predictions(inputs: np.ndarray, outputs: np.ndarray, noise: bool) -> None:
+    posterior = fit(inputs, outputs, noise=noise)
+    points = np.random.default_rng(2).random((5, inputs.shape[1]))
+    prediction = posterior.predict(points)
+    assert np.isfinite(prediction.mean).all()
+    assert np.isfinite(prediction.std).all()
+    assert np.isfinite(posterior.fantasies(points[:1], 4, np.random.default_rng(0)).field(points).mean).all()
+    assert np.isfinite(posterior.sample_path(np.random.default_rng(0), 16)(points).mean).all()
+
+
+def test_without_noise_the_prediction_goes_through_the_data() -> None:
+    prediction = fit(X, Y, noise=False).predict(X)
+    assert prediction.mean / Y.std(axis=0) == pytest.approx(Y / Y.std(axis=0), abs=1e-3)
+
+
+def test_quasi_normal_draws_are_standard_normal_beyond_sobols_dimensions() -> None:
+    draws = quasi_normal(64, 21_300, np.random.default_rng(0))
+    assert draws.shape == (64, 21_300)
+    assert draws[:, -50:].std() == pytest.approx(1.0, abs=0.05)
+    assert draws[:, :50].mean(axis=0) == pytest.approx(np.zeros(50), abs=0.06)

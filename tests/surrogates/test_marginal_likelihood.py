@@ -1,0 +1,95 @@
+"""The fit of the hyperparameters."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import approx_fprime
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+
+from hypermap_lite.surrogates.marginal_likelihood import (
+    Hyperparameters,
+    HyperPrior,
+    MarginalLikelihood,
+    constant_mean,
+    fit_hyperparameters,
+    inverse_from_cholesky,
+)
+
+
+def example(n: int = 25, categorical: bool = False) -> MarginalLikelihood:
+    rng = np.random.default_rng(0)
+    X = rng.random((n, 3))
+    is_ordered = np.array([True, True, not categorical])
+    if categorical:
+        X[:, 2] = (rng.integers(3, size=n) + 0.5) / 3
+    y = np.sin(6 * X[:, 0]) + X[:, 2] + 0.1 * rng.standard_normal(n)
+    return MarginalLikelihood(X, (y - y.mean()) / y.std(), is_ordered, HyperPrior(3))
+
+
+@pytest.mark.parametrize("categorical", [False, True])
+def test_gradient_agrees_with_finite_differences(categorical: bool) -> None:
+    likelihood = example(categorical=categorical)
+    for seed in range(3):
+        theta = likelihood.prior.mode().to_log() + 0.5 * np.random.default_rng(seed).standard_normal(5)
+        numeric = approx_fprime(theta, lambda t: likelihood(t)[0], 1e-7)
+        assert likelihood(theta)[1] == pytest.approx(numeric, rel=1e-4, abs=1e-4)
+
+
+def test_value_is_scikit_learns_likelihood_plus_the_prior() -> None:
+    likelihood = example()
+    h = Hyperparameters(np.array([0.4, 0.9, 2.0]), 1.7, 0.03)
+    kernel = ConstantKernel(1.7) * Matern(h.lengthscales, nu=2.5) + WhiteKernel(0.03)
+    K = kernel(likelihood.X)
+    mean = constant_mean(np.linalg.inv(K), likelihood.y)
+    oracle = GaussianProcessRegressor(kernel, alpha=0, optimizer=None).fit(likelihood.X, likelihood.y - mean)
+    penalty = likelihood.prior.penalty(h.to_log())[0]
+    assert likelihood(h.to_log())[0] == pytest.approx(-oracle.log_marginal_likelihood_value_ + penalty, rel=1e-9)
+
+
+def test_penalty_is_the_negative_log_normal_density_up_to_a_constant() -> None:
+    prior = HyperPrior(4)
+    a, b = math.log(0.3), math.log(2.0)
+    mu, sigma = prior.lengthscale_mu, prior.lengthscale_sigma
+
+    def negative_log_density(log_x: float) -> float:
+        return log_x + 0.5 * ((log_x - mu) / sigma) ** 2
+
+    theta = prior.mode().to_log()
+    first, second = theta.copy(), theta.copy()
+    first[0], second[0] = a, b
+    difference = prior.penalty(first)[0] - prior.penalty(second)[0]
+    assert difference == pytest.approx(negative_log_density(a) - negative_log_density(b))
+
+
+def test_lengthscale_prior_has_the_published_parameters() -> None:
+    prior = HyperPrior(9)
+    assert prior.lengthscale_mu == pytest.approx(math.sqrt(2) + math.log(3))
+    assert prior.mode().lengthscales == pytest.approx(np.full(9, 3 * math.exp(math.sqrt(2) - 3)))
+
+
+def test_the_fit_finds_the_axis_that_does_not_matter_and_the_noise() -> None:
+    h = fit_hyperparameters(example(60), [HyperPrior(3).mode()])
+    assert h.lengthscales[1] > 3 * h.lengthscales[0]
+    assert 0.005 < h.noise_variance < 0.1  # 0.01 over a variance of about 0.6
+
+
+def test_a_second_start_never_makes_the_fit_worse() -> None:
+    likelihood = example()
+    one = fit_hyperparameters(likelihood, [HyperPrior(3).mode()])
+    odd = Hyperparameters(np.full(3, 50.0), 0.02, 3.0)
+    two = fit_hyperparameters(likelihood, [odd, HyperPrior(3).mode()])
+    assert likelihood(two.to_log())[0] <= likelihood(one.to_log())[0] + 1e-9
+
+
+def test_data_that_cannot_be_fitted_leave_the_mode_of_the_prior(caplog: pytest.LogCaptureFixture) -> None:
+    broken = MarginalLikelihood(np.full((3, 1), np.nan), np.zeros(3), np.array([True]), HyperPrior(1))
+    h = fit_hyperparameters(broken, [HyperPrior(1).mode()])
+    assert h.lengthscales == pytest.approx(HyperPrior(1).mode().lengthscales)
+    assert "could not be fitted" in caplog.text
+
+
+def test_inverse_from_cholesky() -> None:
+    K = np.array([[2.0, 0.5], [0.5, 1.0]])
+    assert inverse_from_cholesky(np.linalg.cholesky(K)) == pytest.approx(np.linalg.inv(K))

@@ -1,0 +1,72 @@
+"""Predictions of the random forest."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.surrogates import RandomForest
+
+RNG = np.random.default_rng(0)
+X = RNG.random((40, 2))
+Y = np.column_stack([np.where(X[:, 0] > 0.5, 10.0, 0.0), X[:, 1]])
+ORDERED = np.ones(2, dtype=bool)
+FOREST = RandomForest(number_of_trees=30).fit(X, Y, is_ordered=ORDERED, rng=np.random.default_rng(0))
+Z = np.array([[0.1, 0.5], [0.9, 0.5]])
+
+
+def test_mean_is_scikit_learns() -> None:
+    regressor = FOREST.forests[1].regressor
+    expected = FOREST.forests[1].offset + FOREST.forests[1].scale * regressor.predict(Z)
+    assert FOREST.predict(Z).mean[:, 1] == pytest.approx(expected)
+
+
+def test_a_step_is_learned() -> None:
+    assert FOREST.predict(Z).mean[:, 0] == pytest.approx([0, 10], abs=0.5)
+
+
+def test_variance_is_the_total_over_the_trees() -> None:
+    fantasies = FOREST.fantasies(np.empty((0, 2)), 64, np.random.default_rng(0))
+    conditional = fantasies.field(Z)
+    total = conditional.mean.var(axis=0) + (conditional.std**2).mean(axis=0)
+    assert FOREST.predict(Z).std == pytest.approx(np.sqrt(total))
+    assert fantasies.values.shape == (30, 40, 2)
+
+
+def test_pending_points_are_believed() -> None:
+    believed = FOREST.believe(Z)
+    assert len(believed.X) == 42
+    assert believed.Y[40:] == pytest.approx(FOREST.predict(Z).mean)
+    assert len(FOREST.X) == 40
+
+
+def test_a_path_is_one_tree() -> None:
+    path = FOREST.sample_path(np.random.default_rng(0), 0)(Z)
+    trees = FOREST.fantasies(np.empty((0, 2)), 0, np.random.default_rng(0)).field(Z).mean
+    assert any(np.array_equal(path.mean[0, :, 0], tree[:, 0]) for tree in trees)
+    assert not path.std.any()
+
+
+def test_the_same_generator_grows_the_same_forest() -> None:
+    again = RandomForest(number_of_trees=30).fit(X, Y, is_ordered=ORDERED, rng=np.random.default_rng(0))
+    assert np.array_equal(again.predict(Z).mean, FOREST.predict(Z).mean)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1.0, 1e300])
+def test_any_magnitude_of_outputs_is_fine(scale: float) -> None:
+    forest = RandomForest(number_of_trees=5).fit(X, scale * Y, is_ordered=ORDERED, rng=np.random.default_rng(0))
+    assert np.isfinite(forest.predict(Z).mean).all()
+
+
+def test_a_constant_objective_is_fine() -> None:
+    forest = RandomForest(number_of_trees=5).fit(
+        X, np.full((40, 1), 7.0), is_ordered=ORDERED, rng=np.random.default_rng(0)
+    )
+    assert forest.predict(Z).mean[:, 0] == pytest.approx([7, 7])
+
+
+@pytest.mark.parametrize(
+    "options", [{"number_of_trees": 1}, {"max_features": 0}, {"max_features": 1.5}, {"min_samples_leaf": 0}]
+)
+def test_impossible_options_are_refused(options: dict) -> None:
+    with pytest.raises(ScenarioError, match=next(iter(options))):
+        RandomForest(**options)
