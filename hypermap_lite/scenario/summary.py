@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -16,7 +17,7 @@ def summarize(scenario: Scenario) -> str:
     sections = {
         "experiment": _experiment(scenario),
         "parameters": _parameters(scenario.parameters),
-        "priors": [_component(prior) for prior in scenario.joint_priors],
+        "priors": [line for prior in scenario.joint_priors for line in _joint_prior(prior)],
         "objectives": _objectives(scenario),
         "method": _method(scenario),
         "budget": [_budget(scenario)],
@@ -39,9 +40,29 @@ def _parameters(parameters: Sequence[ParameterSpec]) -> list[str]:
         numeric = p.parameter_type in ("real", "integer")
         values = f"{p.values[0]:g} to {p.values[1]:g}" if numeric else _shorten(", ".join(map(str, p.values)))
         default = "-" if p.parameter_default is None else str(p.parameter_default)
-        prior = _component(p.prior) if p.prior else "-"
-        rows.append((p.name, p.parameter_type, values, p.scale if numeric else "-", default, prior))
+        rows.append((p.name, p.parameter_type, values, p.scale if numeric else "-", default, _prior(p.prior)))
     return _table(rows)
+
+
+def _prior(prior: ComponentSpec | None) -> str:
+    if prior is None:
+        return "-"
+    if prior.type != "mixture":
+        return _component(prior)
+    parts = [f"{c['mean']:g} ± {c['std']:g}{_share(c['weight'])}" for c in prior.options["components"]]
+    return f"mixture({' + '.join(parts)})"
+
+
+def _joint_prior(prior: ComponentSpec) -> list[str]:
+    parts = []
+    for c in prior.options["components"]:
+        terms = [f"{name} {mean:g} ± {c['std'].get(name, math.nan):g}" for name, mean in c["mean"].items()]
+        parts.append(f"  {', '.join(terms)}{_share(c['weight'])}")
+    return [f"{prior.type} of", *parts]
+
+
+def _share(weight: float) -> str:
+    return "" if weight == 1 else f" (weight {weight:g})"
 
 
 def _objectives(scenario: Scenario) -> list[str]:

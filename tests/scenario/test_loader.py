@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
 import pickle
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.scenario import load_scenario
@@ -143,3 +146,43 @@ def test_the_beta_of_pibo_stays_open_until_the_budget_is_known() -> None:
     assert weighting is not None
     assert weighting.options["beta"] is None
     assert math.isclose(weighting.options["floor"], 0.05)
+
+
+NUMBERS = st.floats(-5, 10)
+STDS = st.floats(0.1, 5)
+PARAMETERS = st.one_of(
+    st.fixed_dictionaries(
+        {"parameter_type": st.just("real"), "values": st.just([-5, 10.5])},
+        optional={
+            "parameter_default": NUMBERS,
+            "prior": st.fixed_dictionaries({"type": st.just("gaussian"), "mean": NUMBERS, "std": STDS}),
+        },
+    ),
+    st.fixed_dictionaries(
+        {"parameter_type": st.just("integer"), "values": st.just([1, 8.0])},
+        optional={"scale": st.sampled_from(["linear", "log"]), "prior": st.sampled_from(["uniform", None])},
+    ),
+    st.fixed_dictionaries({"parameter_type": st.just("categorical"), "values": st.just(["a", "b"])}),
+)
+SCENARIOS = st.fixed_dictionaries(
+    {
+        "input_parameters": st.dictionaries(st.sampled_from("abcdef"), PARAMETERS, min_size=1),
+        "objectives": st.sampled_from([[{"name": "y"}], [{"name": "y", "goal": "maximize"}, {"name": "z"}]]),
+    },
+    optional={
+        "seed": st.integers(0, 2**40),
+        "preset": st.sampled_from(["paper", None]),
+        "budget": st.fixed_dictionaries({}, optional={"evaluations": st.integers(1, 99), "minutes": STDS}),
+        "optimizer": st.sampled_from(["bayesian", {"type": "random_search"}]),
+        "surrogate": st.sampled_from(["random_forest", {"noise": False}, {"type": "random_forest", "max_features": 1}]),
+        "acquisition": st.sampled_from(["thompson_sampling", {"scalarization": "linear", "prior_weighting": "none"}]),
+        "evaluator": st.sampled_from(["none", {"type": "python", "function": "a:b", "replicates": 2.0}]),
+    },
+)
+
+
+@settings(max_examples=50, deadline=None)
+@given(SCENARIOS)
+def test_any_scenario_loads_from_its_canonical_form(document: dict[str, Any]) -> None:
+    scenario = load_scenario(document)
+    assert load_scenario(json.loads(json.dumps(scenario.canonical))) == scenario

@@ -34,8 +34,14 @@ def test_the_beta_of_pibo_is_worked_out() -> None:
     priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
     text = page(priors=priors, budget={"evaluations": 28}, objectives=[{"name": "cost"}])
     assert "acquisition weighted by pibo(beta=2, floor=0.05)" in text
-    assert "priors      mixture(components=[{mean: {x: 1}, std: {x: 2}, weight: 1}])" in text
+    assert "priors      mixture of\n              x 1 ± 2\n" in text
     assert "one objective" in text
+
+
+def test_mixtures_read_as_sums() -> None:
+    components = [{"mean": 2, "std": 1}, {"mean": 5, "std": 1, "weight": 0.5}]
+    x = GOOD["input_parameters"]["x"] | {"prior": {"type": "mixture", "components": components}}
+    assert "mixture(2 ± 1 + 5 ± 1 (weight 0.5))" in page(input_parameters={"x": x})
 
 
 def test_unused_priors_are_said_to_be_so() -> None:

@@ -1,0 +1,70 @@
+"""Every example scenario runs, with a tiny budget, through the command line."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from hypermap_lite.cli import main
+from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.lint import lint
+
+EXAMPLES = Path(__file__).parents[1] / "example_scenarios"
+SCENARIOS = sorted(EXAMPLES.rglob("*.json"))
+LIGHT = [file for file in SCENARIOS if "robot" not in file.parts]
+ROBOT = [file for file in SCENARIOS if "robot" in file.parts]
+
+TINY = ["budget.evaluations=5", "budget.batch_size=2", "design_of_experiment.number_of_samples=3"]
+"""One batch of the design, one across its end, one by the model."""
+
+
+def name_of(file: Path) -> str:
+    return file.relative_to(EXAMPLES).with_suffix("").as_posix()
+
+
+def run(file: Path, folder: Path, *changes: str) -> int:
+    options = [word for change in (*TINY, *changes) for word in ("--set", change)]
+    return main(["--quiet", "run", str(file), "--output-dir", str(folder), "--no-plot", *options])
+
+
+@pytest.mark.parametrize("file", LIGHT, ids=name_of)
+def test_an_example_runs(file: Path, tmp_path: Path) -> None:
+    assert run(file, tmp_path / "out") == 0
+    with (tmp_path / "out" / "history.csv").open() as history:
+        assert [row["state"] for row in csv.DictReader(history)] == ["completed"] * 5
+
+
+@pytest.mark.parametrize("file", ROBOT, ids=name_of)
+def test_a_robot_example_runs(file: Path, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    assert run(file, tmp_path / "out", "evaluator.replicates=1") == 0
+    with (tmp_path / "out" / "history.csv").open() as history:
+        assert [row["state"] for row in csv.DictReader(history)] == ["completed"] * 5
+
+
+@pytest.mark.parametrize("file", SCENARIOS, ids=name_of)
+def test_an_example_loads_from_its_canonical_form(file: Path) -> None:
+    scenario = load_scenario(file)
+    assert load_scenario(json.loads(json.dumps(scenario.canonical))) == scenario
+
+
+@pytest.mark.parametrize("file", SCENARIOS, ids=name_of)
+def test_an_example_gives_no_warning(file: Path) -> None:
+    assert lint(load_scenario(file)) == []
+
+
+@pytest.mark.parametrize("file", SCENARIOS, ids=name_of)
+def test_an_example_is_named_after_its_file_and_stands_in_the_table(file: Path) -> None:
+    scenario = load_scenario(file)
+    assert scenario.application_name.endswith(file.stem)
+    assert scenario.description
+    table = (EXAMPLES / "README.md").read_text()
+    assert f"[`{name_of(file)}.json`]({name_of(file)}.json)" in table
+
+
+def test_examples_have_names_of_their_own() -> None:
+    names = [load_scenario(file).application_name for file in SCENARIOS]
+    assert len(set(names)) == len(names)
