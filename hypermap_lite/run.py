@@ -14,6 +14,7 @@ import numpy as np
 from hypermap_lite import assembly
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.evaluation.executors import Executor, InProcessExecutor, ProcessExecutor
+from hypermap_lite.evaluation.observer import RunObserver
 from hypermap_lite.evaluation.runner import Runner, StopReason
 from hypermap_lite.evaluation.worker_process import pickled
 from hypermap_lite.history.run_folder import RunFolder
@@ -24,7 +25,6 @@ from hypermap_lite.scenario.model import EvaluatorSpec, Scenario
 
 if TYPE_CHECKING:
     from hypermap_lite.evaluation.evaluator import Evaluator
-    from hypermap_lite.evaluation.observer import RunObserver
     from hypermap_lite.evaluation.outcome import Evaluation
     from hypermap_lite.optimizers.base import Optimizer
     from hypermap_lite.typing import Configuration, FloatArray
@@ -134,7 +134,8 @@ def run_scenario(
         objectives=scenario.objectives,
         canonical=scenario.canonical,
     )
-    with closing(_executor(evaluator, spec, is_given=function is not None)) as executor, folder:
+    executor = _executor(evaluator, spec, is_given=function is not None)
+    with folder, closing(executor):  # workers end before the lock is released
         runner = Runner(
             optimizer=optimizer,
             evaluator=evaluator,
@@ -145,7 +146,7 @@ def run_scenario(
             replicates=spec.replicates,
             max_consecutive_failures=spec.max_consecutive_failures,
             should_stop=should_stop,
-            **({} if observer is None else {"observer": observer}),
+            observer=observer or RunObserver(),
         )
         return result_of(folder, runner.run())
 

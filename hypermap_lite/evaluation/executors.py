@@ -81,9 +81,11 @@ class ProcessExecutor:
 
     def close(self) -> None:
         """End all workers, at once if they are busy."""
-        for worker in self._slots:
-            if worker is not None:
-                worker.stop()
+        workers = [worker for worker in self._slots if worker is not None]
+        for worker in workers:
+            worker.dismiss()  # all first, so that they end at the same time
+        for worker in workers:
+            worker.stop()
         self._slots = [None] * len(self._slots)
 
     def __enter__(self) -> Self:

@@ -71,6 +71,11 @@ class Runner:
     should_stop: Callable[[], bool] = lambda: False
     """Asked before every call; once true, running calls are waited for and no other is begun."""
 
+    _clock: Clock = field(init=False)
+    _front: FrontTracker = field(init=False)
+    _failures: int = field(init=False, default=0)
+    """Configurations without a usable result in a row, up to now."""
+
     def run(self) -> StopReason:
         """Evaluate until the budget, the time or the search space is used up, or a stop is asked for.
 
@@ -84,13 +89,20 @@ class Runner:
             If the folder cannot be written; what was finished before is kept.
         """
         self._restore()
-        reason = self._loop()
-        self.folder.sort_replicates()
-        self.folder.write_pareto()
+        try:
+            reason = self._loop()
+        except RepeatedFailureError:
+            self._tidy_up()
+            raise
+        self._tidy_up()
         logger.info("the run ends after %d evaluations: %s", len(self.folder.evaluations), reason.value)
         if reason is not StopReason.INTERRUPTED:
             self._require_result(reason)
         return reason
+
+    def _tidy_up(self) -> None:
+        self.folder.sort_replicates()
+        self.folder.write_pareto()
 
     def _restore(self) -> None:
         """Tell the optimizer the batches that are complete on disk."""

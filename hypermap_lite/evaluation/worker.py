@@ -42,7 +42,10 @@ def main(requests: int, answers: int) -> None:
         while evaluator is not None and (request := pickle.loads(inbox.get())) is not None:
             with captured_output(request):
                 replicate = call(evaluator, request)
-            outbox.send(replicate)
+            try:
+                outbox.send(replicate)
+            except BrokenPipeError:
+                end_group()
 
 
 def _receive(source: Connection, inbox: SimpleQueue[bytes]) -> None:
@@ -51,7 +54,12 @@ def _receive(source: Connection, inbox: SimpleQueue[bytes]) -> None:
         try:
             inbox.put(source.recv_bytes())
         except (EOFError, OSError):
-            os.killpg(0, signal.SIGKILL)
+            end_group()
+
+
+def end_group() -> None:
+    """Kill this process and everything it started: the parent is gone, and nobody waits for an answer."""
+    os.killpg(0, signal.SIGKILL)
 
 
 def _load(content: bytes, outbox: Connection) -> Evaluator | None:

@@ -113,10 +113,14 @@ class Worker:
         self._requests.close()
         self.answers.close()
 
-    def stop(self) -> None:
-        """Let an idle worker end by itself, then kill what is left of its group."""
+    def dismiss(self) -> None:
+        """Tell an idle worker to end."""
         if self.request is None and self.is_alive():
             self._send(pickle.dumps(None))
+
+    def stop(self) -> None:
+        """Let a worker that was dismissed end by itself, then kill what is left of its group."""
+        if self.request is None:
             deadline = time.perf_counter() + FAREWELL_SECONDS
             while self.is_alive() and time.perf_counter() < deadline:
                 time.sleep(0.002)

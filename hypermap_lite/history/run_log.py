@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import time
 from collections.abc import Iterator
@@ -19,6 +20,15 @@ class _UtcFormatter(logging.Formatter):
     default_msec_format = "%s.%03dZ"
 
 
+class _RunLogHandler(logging.FileHandler):
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 - the base class's name
+        """Let the line go: on a full disk the result files raise an error that is worth more."""
+
+    def close(self) -> None:
+        with contextlib.suppress(OSError):
+            super().close()
+
+
 @contextmanager
 def run_log(path: Path) -> Iterator[None]:
     """Write what the package logs at INFO and above to a file as long as the context lasts.
@@ -29,7 +39,7 @@ def run_log(path: Path) -> Iterator[None]:
         If the file cannot be opened.
     """
     with explained(path):
-        handler = logging.FileHandler(path, encoding="utf-8", errors="backslashreplace")
+        handler = _RunLogHandler(path, encoding="utf-8", errors="backslashreplace")
     handler.setFormatter(_UtcFormatter("%(asctime)s %(levelname)s %(message)s"))
     handler.setLevel(logging.INFO)
     package = logging.getLogger(PACKAGE_LOGGER)

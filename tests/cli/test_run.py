@@ -2,6 +2,7 @@
 
 import csv
 import json
+import resource
 import signal
 import subprocess
 import sys
@@ -116,6 +117,23 @@ def test_folder_that_cannot_be_made_ends_with_status_2(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     assert run(write_scenario(tmp_path), "--output-dir", str(tmp_path / "file" / "run")) == 2
     assert "cannot be written: Not a directory" in capsys.readouterr().err
+
+
+def test_full_disk_ends_with_status_2_and_the_next_run_goes_on(tmp_path):
+    path = write_scenario(tmp_path, budget={"evaluations": 60, "batch_size": 2})
+    done = subprocess.run(
+        [sys.executable, "-m", "hypermap_lite", "run", str(path), "--no-plot", "-q"],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000)),
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert "cannot be written: File too large" in done.stderr
+    assert "hint: Free some space" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert run(path) == 0
+    assert len(history(tmp_path / "run")) == 60
+    assert len((tmp_path / "begun").read_text().splitlines()) <= 61
 
 
 def test_evaluator_that_does_not_import_is_named_with_its_place(tmp_path, capsys):

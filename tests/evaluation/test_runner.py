@@ -167,6 +167,7 @@ def test_failures_in_a_row_stop_the_run_after_saving(tmp_path):
     ):
         run(tmp_path, function("crash"), max_consecutive_failures=3)
     assert len(rows(tmp_path, "history.csv")) == 3
+    assert rows(tmp_path, "pareto.csv") == []
 
 
 def test_run_stopped_for_failures_can_go_on(tmp_path):

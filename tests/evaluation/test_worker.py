@@ -34,12 +34,15 @@ def children_of(pid):
 
 def test_worker_and_what_it_started_die_with_the_parent(tmp_path):
     target = tmp_path / "late"
-    with subprocess.Popen([sys.executable, "-c", PARENT, str(target)], cwd=Path(__file__).parents[2]) as parent:
+    command = [sys.executable, "-c", PARENT, str(target)]
+    with subprocess.Popen(command, cwd=Path(__file__).parents[2], stderr=subprocess.PIPE) as parent:
         wait_for((tmp_path / "late.started").exists)
         (worker,) = children_of(parent.pid)
         grandchildren = children_of(worker)
         parent.send_signal(signal.SIGKILL)
+        said = parent.stderr.read()
     assert grandchildren
+    assert said == b""
     wait_for(lambda: not any(is_running(pid) for pid in (worker, *grandchildren)))
     assert not target.exists()
 

@@ -20,6 +20,7 @@ def test_worker_reports_that_it_is_loaded_and_then_its_call(tmp_path):
     assert worker.started is not None
     assert worker.receive().outcome.values["g"] == 0.25
     assert worker.request is None
+    worker.dismiss()
     worker.stop()
     assert worker.process.returncode == 0
 
@@ -53,7 +54,7 @@ def test_arithmetic_libraries_use_one_thread_in_workers_and_the_users_choice_sta
         worker.give(request(tmp_path))
         assert worker.receive() is None
         assert worker.receive().outcome.values == threads
-        worker.stop()
+        worker.kill()
 
 
 def test_function_of_the_running_script_is_refused(tmp_path):

@@ -26,6 +26,15 @@ def test_logger_is_left_as_it_was(tmp_path):
     assert (package.level, list(package.handlers)) == before
 
 
+def test_full_disk_does_not_stop_the_run(tmp_path, capsys):
+    with run_log(tmp_path / "run.log"):
+        (handler,) = [h for h in logging.getLogger("hypermap_lite").handlers if isinstance(h, logging.FileHandler)]
+        full = open("/dev/full", "w")  # noqa: SIM115 - closed by the handler
+        handler.setStream(full).close()
+        logging.getLogger("hypermap_lite").info("story")
+    assert capsys.readouterr().err == ""
+
+
 def test_log_that_cannot_be_opened_is_an_error(tmp_path):
     with pytest.raises(RunFolderError, match="cannot be written: Is a directory"), run_log(tmp_path):
         pass
