@@ -104,6 +104,7 @@ BAD: dict[str, Bad] = {
     "seed_in_quotes": Bad(
         changed("seed", "3"), ("$.seed", '"3" is a string', "an integer >= 0", "Write 3 without quotes")
     ),
+    "seed_in_words": Bad(changed("seed", "one"), ("$.seed", '"one" is a string', "an integer >= 0")),
     "negative_seed": Bad(changed("seed", -1), ("$.seed", "-1 is too small", ">= 0")),
     "name_with_a_slash": Bad(changed("application_name", "a/b"), ("$.application_name", '"a/b"', "letters, digits")),
     # parameters

@@ -119,6 +119,12 @@ def test_a_mapping_that_is_not_json_is_an_error() -> None:
         load_scenario(with_sections(seed=np.int64(3)))
 
 
+def test_a_mapping_can_extend_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "base.json").write_text(json.dumps(GOOD))
+    assert load_scenario({"extends": "base.json", "seed": 3}) == load_scenario(GOOD | {"seed": 3})
+
+
 def test_a_mapping_is_left_as_it_was() -> None:
     given = with_sections(surrogate="random_forest")
     before = copy.deepcopy(given)
