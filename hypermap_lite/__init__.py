@@ -6,7 +6,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hypermap_lite.assembly import build_optimizer
+    from hypermap_lite.ask_tell import Optimizer
     from hypermap_lite.evaluation.outcome import Evaluation, State
     from hypermap_lite.history.rows import read_history
     from hypermap_lite.pareto import hypervolume, non_dominated
@@ -17,10 +17,10 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Evaluation",
+    "Optimizer",
     "Result",
     "State",
     "__version__",
-    "build_optimizer",
     "hypervolume",
     "load_scenario",
     "non_dominated",
@@ -30,9 +30,9 @@ __all__ = [
 
 _HOMES = {
     "Evaluation": "hypermap_lite.evaluation.outcome",
+    "Optimizer": "hypermap_lite.ask_tell",
     "Result": "hypermap_lite.run",
     "State": "hypermap_lite.evaluation.outcome",
-    "build_optimizer": "hypermap_lite.assembly",
     "hypervolume": "hypermap_lite.pareto.hypervolume",
     "load_scenario": "hypermap_lite.scenario",
     "non_dominated": "hypermap_lite.pareto.dominance",

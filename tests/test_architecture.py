@@ -23,7 +23,7 @@ LAYERS = (
     ("scenario",),
     ("evaluation",),
     ("assembly",),
-    ("run",),
+    ("run", "ask_tell"),
     ("plotting",),
     ("cli",),
     ("__main__",),
