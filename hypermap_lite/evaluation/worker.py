@@ -20,6 +20,7 @@ from pathlib import Path
 from queue import SimpleQueue
 
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator, call, last_line
+from hypermap_lite.evaluation.outcome import Replicate
 
 
 def main(requests: int, answers: int) -> None:
@@ -41,11 +42,14 @@ def main(requests: int, answers: int) -> None:
         evaluator = _load(inbox.get(), outbox)
         while evaluator is not None and (request := pickle.loads(inbox.get())) is not None:
             with captured_output(request):
-                replicate = call(evaluator, request)
-            try:
-                outbox.send(replicate)
-            except BrokenPipeError:
-                end_group()
+                _send(outbox, call(evaluator, request))  # before the logs are tidied: it must reach the disk soon
+
+
+def _send(outbox: Connection, replicate: Replicate) -> None:
+    try:
+        outbox.send(replicate)
+    except BrokenPipeError:
+        end_group()
 
 
 def _receive(source: Connection, inbox: SimpleQueue[bytes]) -> None:
