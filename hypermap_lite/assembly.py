@@ -84,7 +84,8 @@ def build_parameter(spec: ParameterSpec) -> Parameter:
         raise error.below(path) from None
     if spec.parameter_default is not None and not parameter.contains(spec.parameter_default):
         problem = f"the default {spec.parameter_default!r} is not a legal value"
-        raise ScenarioError(f"{path}.parameter_default", problem, allowed=parameter.allowed())
+        hint = nearest(str(spec.parameter_default), map(str, spec.values))
+        raise ScenarioError(f"{path}.parameter_default", problem, allowed=parameter.allowed(), hint=hint)
     return parameter
 
 

@@ -15,7 +15,9 @@ The library raises, `hypermap_lite.cli` alone prints and exits.
 
 from __future__ import annotations
 
+import contextlib
 import difflib
+import math
 from collections.abc import Iterable
 
 
@@ -111,3 +113,20 @@ def nearest(name: str, known: Iterable[str]) -> str:
     if not matches and len(wanted) > 1:
         matches = [n for n in names if n.startswith(wanted) or wanted == "".join(word[:1] for word in n.split("_"))]
     return f"Did you mean '{names[matches[0]]}'?" if matches else ""
+
+
+def finite_number(value: object, path: str, what: str) -> float:
+    """Return `value` as a float if it is a finite number, else raise a `ScenarioError` at `path`."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        with contextlib.suppress(OverflowError):
+            if math.isfinite(number := float(value)):
+                return number
+    raise ScenarioError(path, f"{what} is {value!r}", allowed="a finite number")
+
+
+def positive_number(value: object, path: str, what: str) -> float:
+    """Return `value` as a float if it is a finite positive number, else raise a `ScenarioError` at `path`."""
+    number = finite_number(value, path, what)
+    if number <= 0:
+        raise ScenarioError(path, f"{what} is {value!r}", allowed="a number > 0")
+    return number

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import erfcx, log_ndtr, logsumexp
+from scipy.special import erfcx, log_ndtr
 
 from hypermap_lite.scalarization.base import Normalization, Scalarization
 from hypermap_lite.surrogates.base import Conditional, Field
@@ -74,7 +74,7 @@ class LinearImprovement:
         z = (self.incumbents[:, None, :] - c.mean) / c.std
         with np.errstate(divide="ignore"):
             terms = log_h(z) + np.log(c.std) + np.log(self.weights / self.scale)
-        return np.asarray(logsumexp(terms, axis=(0, 2))) - math.log(len(z)), z, terms
+        return log_sum_exp(np.moveaxis(terms, 2, 1).reshape(-1, terms.shape[1])) - math.log(len(z)), z, terms
 
     def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the scores, shape (n,), and their gradients, shape (n, d)."""
@@ -122,7 +122,7 @@ class SampledImprovement:
         samples = self.normalization(c.mean + c.std * self.normal[:, None, :])
         t = (self.incumbents[:, None] - self.scalarization(samples, self.weights)) / SMOOTHING
         log_improvement = log_softplus(t) + math.log(SMOOTHING)
-        score = np.asarray(logsumexp(log_improvement, axis=0)) - math.log(len(t))
+        score = log_sum_exp(log_improvement) - math.log(len(t))
         return score, samples, t, log_improvement
 
     def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -139,6 +139,14 @@ class SampledImprovement:
             by_std = by_std.sum(axis=0, keepdims=True)
         assert c.pullback is not None
         return score, c.pullback(by_mean, by_std)
+
+
+def log_sum_exp(terms: FloatArray) -> FloatArray:
+    """Return log(sum(exp(terms))) over the first of two axes, shape (k, n) to (n,); -inf where all terms are."""
+    largest = terms.max(axis=0)
+    shift = np.where(np.isfinite(largest), largest, 0.0)
+    with np.errstate(divide="ignore"):
+        return shift + np.log(np.exp(terms - shift).sum(axis=0))
 
 
 def log_softplus(t: FloatArray) -> FloatArray:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,9 +11,6 @@ from hypermap_lite.acquisition.base import Scorer
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.typing import FloatArray
-
-STEP = 1e-6
-"""Step of the central differences of the log prior, in units of the cube."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +56,10 @@ class PriorWeighted:
     prior: ProductPrior
     weight: float
     floor: float
+    _log_peak: float = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_log_peak", self.prior.log_peak())
 
     @property
     def is_differentiable(self) -> bool:
@@ -71,22 +73,15 @@ class PriorWeighted:
     def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the scores, shape (n,), and their gradients, shape (n, d)."""
         score, gradient = self.inner.with_gradient(X)
-        score = score + self.weight * self.log_relative_density(X)
-        return score, gradient + self.weight * self._gradient(X)
+        relative = self.log_relative_density(X)
+        share = np.exp(self._log_share(X) - relative)  # of the density in density plus floor
+        return score + self.weight * relative, gradient + self.weight * share[:, None] * self.prior.log_gradient(X)
 
     def log_relative_density(self, X: FloatArray) -> FloatArray:
         """Return log((1 - floor) density / peak + floor), shape (n,)."""
-        log_ratio = self.prior.log_density(X) - self.prior.log_peak()
-        if self.floor == 0:
-            return log_ratio
-        return np.logaddexp(np.log1p(-self.floor) + log_ratio, np.log(self.floor))
+        log_share = self._log_share(X)
+        return log_share if self.floor == 0 else np.logaddexp(log_share, math.log(self.floor))
 
-    def _gradient(self, X: FloatArray) -> FloatArray:
-        gradient = np.empty_like(X)
-        for j in range(X.shape[1]):
-            low, high = X.copy(), X.copy()
-            low[:, j] = np.maximum(X[:, j] - STEP, 0.0)
-            high[:, j] = np.minimum(X[:, j] + STEP, 1.0)
-            rise = self.log_relative_density(high) - self.log_relative_density(low)
-            gradient[:, j] = rise / (high[:, j] - low[:, j])
-        return gradient
+    def _log_share(self, X: FloatArray) -> FloatArray:
+        """Return log((1 - floor) density / peak), shape (n,)."""
+        return math.log1p(-self.floor) + self.prior.log_density(X) - self._log_peak

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from hypermap_lite.design.base import InitialDesign
@@ -9,6 +11,7 @@ from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
+from hypermap_lite.typing import Configuration
 
 
 class InitialPhase:
@@ -27,16 +30,27 @@ class InitialPhase:
     """
 
     def __init__(self, space: SearchSpace, prior: ProductPrior, design: InitialDesign, n: int, seed: int) -> None:
-        X = design.points(space, prior, n, generator(seed, Stream.DESIGN)) if n else np.empty((0, space.dimension))
-        self.has_default = space.default is not None
+        self._space = space
+        self._prior = prior
+        self._design = design
+        self._n = n
+        self._seed = seed
+
+    @cached_property
+    def configurations(self) -> list[Configuration]:
+        """The default, if there is one, and the points of the design, without repeats."""
+        space, rng = self._space, generator(self._seed, Stream.DESIGN)
+        X = np.empty((0, space.dimension))
+        if self._n:
+            X = self._design.points(space, self._prior, self._n, rng)
         if space.default is not None:
             X = np.vstack([space.encode([space.default]), X])
-        self._configurations = space.decode(X[space.unseen(X, ())][:n])
+        return space.decode(X[space.unseen(X, ())][: self._n])
 
     def __len__(self) -> int:
-        return len(self._configurations)
+        return len(self.configurations)
 
     def suggestion(self, trial: int) -> Suggestion:
         """Return the suggestion of one of the first trials."""
-        phase = "default" if self.has_default and trial == 0 else "design"
-        return Suggestion(trial=trial, configuration=self._configurations[trial], phase=phase)
+        phase = "default" if self._space.default is not None and trial == 0 else "design"
+        return Suggestion(trial=trial, configuration=self.configurations[trial], phase=phase)

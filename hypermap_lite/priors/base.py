@@ -148,21 +148,6 @@ def on_levels(density: Density, axis: Axis) -> Density:
     return Histogram(edges, masses / masses.sum())
 
 
-def positive_number(value: object, path: str, what: str) -> float:
-    """Return `value` as a float if it is a finite positive number, else raise a `ScenarioError` at `path`."""
-    number = finite_number(value, path, what)
-    if number <= 0:
-        raise ScenarioError(path, f"{what} is {value!r}", allowed="a number > 0")
-    return number
-
-
-def finite_number(value: object, path: str, what: str) -> float:
-    """Return `value` as a float if it is a finite number, else raise a `ScenarioError` at `path`."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise ScenarioError(path, f"{what} is {value!r}", allowed="a finite number")
-    return float(value)
-
-
 def check_keys(options: Mapping[str, Any], path: str, *, required: Sequence[str], optional: Sequence[str] = ()) -> None:
     """Raise a `ScenarioError` if a key of a nested object is missing or unknown."""
     known = [*required, *optional]

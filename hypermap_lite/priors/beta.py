@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 from scipy.special import betainc, betaln
 
-from hypermap_lite.errors import ScenarioError, nearest
-from hypermap_lite.priors.base import Axis, Density, on_levels, positive_number
+from hypermap_lite.errors import ScenarioError, nearest, positive_number
+from hypermap_lite.priors.base import Axis, Density, on_levels
 from hypermap_lite.typing import FloatArray, Rng
 
 SHAPES: Final[Mapping[str, tuple[float, float]]] = {

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import logsumexp
 
-from hypermap_lite.errors import ScenarioError
-from hypermap_lite.priors.base import Axis, Density, check_keys, finite_number, on_levels, positive_number
+from hypermap_lite.errors import ScenarioError, finite_number, positive_number
+from hypermap_lite.priors.base import Axis, Density, check_keys, on_levels
 from hypermap_lite.priors.truncated_gaussian import gaussian_on
 from hypermap_lite.typing import FloatArray, Rng
 
@@ -100,7 +99,7 @@ class MixtureDensity:
     def log_density(self, U: FloatArray) -> FloatArray:
         """Return the log of the summed density at n points, shape (n, k), as shape (n,)."""
         logs = [sum(f.log_density(U[:, j]) for j, f in enumerate(c)) for c in self.components]
-        return np.asarray(logsumexp(np.array(logs), axis=0, b=self.weights[:, None]))
+        return np.logaddexp.reduce(np.log(self.weights)[:, None] + np.array(logs), axis=0)
 
     def mode(self) -> FloatArray:
         """Return the densest of the components' modes, shape (k,)."""

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.special import log_ndtr, ndtri_exp
 
-from hypermap_lite.errors import ScenarioError
-from hypermap_lite.priors.base import Axis, Density, finite_number, on_levels, positive_number
+from hypermap_lite.errors import ScenarioError, finite_number, positive_number
+from hypermap_lite.priors.base import Axis, Density, on_levels
 from hypermap_lite.typing import FloatArray, Rng
 
 LOG_SQRT_2PI = 0.5 * math.log(2 * math.pi)
+
+NARROWEST = 1e-12
+"""Smallest standard deviation, in units of the axis."""
+
+FLATTEST = 1e6
+"""Largest standard deviation, in units of the axis: the density is uniform to twelve digits."""
+
+FARTHEST = 1e6
+"""Largest distance of the mean, in standard deviations: nearly all mass is in the last millionth of the axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,11 +55,12 @@ class GaussianPrior:
 def gaussian_on(axis: Axis, mean: float, std: float) -> TruncatedNormal:
     """Return the truncated normal density of a native mean and standard deviation, levels not yet considered."""
     try:
-        return TruncatedNormal(axis.locate(mean), axis.scale_std(std))
+        location, scale = axis.locate(mean), min(max(axis.scale_std(std), NARROWEST), FLATTEST)
     except ScenarioError as error:
         raise ScenarioError(
             "$.mean", error.problem, allowed=error.allowed, hint="Give ordinal and categorical parameters 'weights'."
         ) from None
+    return TruncatedNormal(min(max(location, -FARTHEST * scale), 1 + FARTHEST * scale), scale)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,15 +69,17 @@ class TruncatedNormal(Density):
 
     location: float
     scale: float
+    _log_mass: float = field(init=False, repr=False, compare=False)
+    """Log of the probability that the untruncated normal lies in [0, 1]."""
+
+    def __post_init__(self) -> None:
+        low, high, _ = self._tail()
+        object.__setattr__(self, "_log_mass", float(log_difference(log_ndtr(high), log_ndtr(low))))
 
     def _tail(self) -> tuple[float, float, float]:
         """Return the bounds in standard units, mirrored if need be so that the interval is not in the upper tail."""
         a, b = -self.location / self.scale, (1 - self.location) / self.scale
         return (-b, -a, -1.0) if a > 0 else (a, b, 1.0)
-
-    def _log_mass(self) -> float:
-        low, high, _ = self._tail()
-        return float(log_difference(log_ndtr(high), log_ndtr(low)))
 
     def sample(self, n: int, rng: Rng) -> FloatArray:
         """Draw n points by inversion, shape (n,)."""
@@ -79,7 +91,7 @@ class TruncatedNormal(Density):
     def log_density(self, u: FloatArray) -> FloatArray:
         """Return the log density, shape (n,)."""
         z = (u - self.location) / self.scale
-        return -0.5 * z * z - LOG_SQRT_2PI - math.log(self.scale) - self._log_mass()
+        return -0.5 * z * z - LOG_SQRT_2PI - math.log(self.scale) - self._log_mass
 
     def cdf(self, u: FloatArray) -> FloatArray:
         """Return the probability of [0, u], shape (n,)."""
@@ -87,7 +99,7 @@ class TruncatedNormal(Density):
         z = sign * (np.clip(u, 0.0, 1.0) - self.location) / self.scale
         edge = low if sign > 0 else high
         part = log_difference(np.maximum(log_ndtr(z), log_ndtr(edge)), np.minimum(log_ndtr(z), log_ndtr(edge)))
-        return np.exp(part - self._log_mass())
+        return np.exp(part - self._log_mass)
 
     def mode(self) -> float:
         """Return the location, or the bound nearest to it."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hypermap_lite.errors import ScenarioError
-from hypermap_lite.priors.base import Axis, Density, Histogram, finite_number
+from hypermap_lite.errors import ScenarioError, finite_number
+from hypermap_lite.priors.base import Axis, Density, Histogram
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

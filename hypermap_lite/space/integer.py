@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hypermap_lite.errors import ScenarioError
+from hypermap_lite.errors import ScenarioError, finite_number
 from hypermap_lite.space.parameter import Parameter
 from hypermap_lite.space.real import check_bounds
 from hypermap_lite.typing import FloatArray, IntArray, Value
@@ -30,7 +30,7 @@ class IntegerParameter(Parameter):
 
     def __post_init__(self) -> None:
         for i, bound in enumerate((self.low, self.high)):
-            if not float(bound).is_integer():
+            if not finite_number(bound, f"$.values[{i}]", "the bound").is_integer():
                 raise ScenarioError(f"$.values[{i}]", f"the bound {bound} is not whole", allowed="an integer")
         check_bounds(self.name, self.low, self.high, log=self.log)
         object.__setattr__(self, "low", int(self.low))

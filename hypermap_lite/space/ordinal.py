@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hypermap_lite.errors import ScenarioError
-from hypermap_lite.space.parameter import Parameter, require_number
+from hypermap_lite.errors import ScenarioError, finite_number
+from hypermap_lite.space.parameter import Parameter
 from hypermap_lite.typing import FloatArray, Value
 
 
@@ -22,7 +22,7 @@ class OrdinalParameter(Parameter):
     def __post_init__(self) -> None:
         check_levels(self.name, self.values)
         for i, value in enumerate(self.values):
-            require_number(value, f"$.values[{i}]", "the level")
+            finite_number(value, f"$.values[{i}]", "the level")
         object.__setattr__(self, "values", tuple(sorted(self.values)))
 
     @property

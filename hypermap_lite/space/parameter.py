@@ -82,10 +82,3 @@ class Parameter(ABC):
     def scale_std(self, std: float) -> float:
         """Return a standard deviation, given in native units (in decades on a log scale), in units of the axis."""
         raise ScenarioError("$", f"'{self.name}' has no numeric axis to measure {std} on")
-
-
-def require_number(value: object, path: str, what: str) -> float:
-    """Return `value` as a float if it is a finite number, else raise a `ScenarioError` at `path`."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise ScenarioError(path, f"{what} is {value!r}", allowed="a finite number")
-    return float(value)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hypermap_lite.errors import ScenarioError
-from hypermap_lite.space.parameter import Parameter, require_number
+from hypermap_lite.errors import ScenarioError, finite_number
+from hypermap_lite.space.parameter import Parameter
 from hypermap_lite.typing import FloatArray, Value
 
 SIGNIFICANT_DIGITS = 13
@@ -84,12 +84,14 @@ class RealParameter(Parameter):
 
 def check_bounds(name: str, low: object, high: object, *, log: bool) -> None:
     """Raise a `ScenarioError` unless low and high are finite numbers in order, and positive on a log axis."""
-    first, last = require_number(low, "$.values[0]", "the bound"), require_number(high, "$.values[1]", "the bound")
+    first, last = finite_number(low, "$.values[0]", "the bound"), finite_number(high, "$.values[1]", "the bound")
     if first >= last:
         problem = "are equal" if first == last else "are reversed"
         hint = f"Make '{name}' a constant of the evaluator." if first == last else "Swap the two numbers."
         raise ScenarioError(
             "$.values", f"the bounds [{low}, {high}] {problem}", allowed="[low, high] with low < high", hint=hint
         )
+    if not math.isfinite(last - first):
+        raise ScenarioError("$.values", f"the range of [{low}, {high}] is not finite", allowed="a range below 1e308")
     if log and first <= 0:
         raise ScenarioError("$.values[0]", f"the lower bound {low} of a log scale is not positive", allowed="> 0")

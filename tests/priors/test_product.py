@@ -44,3 +44,12 @@ def test_no_factor_means_no_preference() -> None:
     assert empty.is_uniform
     assert not PRIOR.is_uniform
     assert np.array_equal(empty.log_density(np.zeros((3, 2))), np.zeros(3))
+
+
+def test_log_gradient_agrees_with_finite_differences_along_real_axes() -> None:
+    X = PRIOR.sample(5, np.random.default_rng(0))
+    gradient = PRIOR.log_gradient(X)
+    for j, e in enumerate(1e-5 * np.eye(4)[:2]):
+        numeric = (PRIOR.log_density(X + e) - PRIOR.log_density(X - e)) / 2e-5
+        assert gradient[:, j] == pytest.approx(numeric, rel=1e-4, abs=1e-4)
+    assert not gradient[:, 2:].any()

@@ -17,7 +17,7 @@ OPERATOR_MEANS = {
     "mp3_threshold": 0.05,
 }
 STRAIGHT_THROUGH_THE_ENGINE = OPERATOR_MEANS | {"mp3_threshold": 1.5}
-PRESSED_ON_THE_TABLE = OPERATOR_MEANS | {"mp1_position_z": 0.5, "mp3_threshold": -0.5}
+LOWERED_ONTO_THE_ENGINE = OPERATOR_MEANS | {"mp1_position_z": 0.5, "mp3_threshold": -0.5}
 
 
 @pytest.fixture(scope="session")

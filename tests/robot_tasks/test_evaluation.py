@@ -11,7 +11,7 @@ import pytest
 from robot_tasks import obstacle_avoidance
 from robot_tasks.errors import ParameterError, UnknownNameError
 from robot_tasks.evaluation import evaluate
-from tests.robot_tasks.conftest import OPERATOR_MEANS, PRESSED_ON_THE_TABLE, STRAIGHT_THROUGH_THE_ENGINE
+from tests.robot_tasks.conftest import LOWERED_ONTO_THE_ENGINE, OPERATOR_MEANS, STRAIGHT_THROUGH_THE_ENGINE
 
 IN_A_FRESH_PROCESS = """
 import json, robot_tasks, sys
@@ -66,7 +66,7 @@ def test_seeds_change_the_circumstances():
 
 def test_nothing_that_ran_before_has_an_influence():
     first = obstacle_avoidance(OPERATOR_MEANS, seed=4)
-    for seed, parameters in enumerate((STRAIGHT_THROUGH_THE_ENGINE, PRESSED_ON_THE_TABLE)):
+    for seed, parameters in enumerate((STRAIGHT_THROUGH_THE_ENGINE, LOWERED_ONTO_THE_ENGINE)):
         obstacle_avoidance(parameters, seed=seed)
         assert obstacle_avoidance(OPERATOR_MEANS, seed=4) == first
 

@@ -89,6 +89,8 @@ def test_illegal_values_are_not_contained(value: object) -> None:
         pytest.param("real", {"low": "a", "high": 1}, "finite number", id="text"),
         pytest.param("real", {"low": 0, "high": float("inf")}, "finite number", id="infinite"),
         pytest.param("real", {"low": 0, "high": 1, "log": True}, "not positive", id="log-from-zero"),
+        pytest.param("real", {"low": -1e308, "high": 1e308}, "not finite", id="infinite-range"),
+        pytest.param("integer", {"low": 0, "high": 10**400}, "finite number", id="beyond-floats"),
         pytest.param("integer", {"low": 0.5, "high": 3}, "not whole", id="half"),
         pytest.param("ordinal", {"values": (1.0,)}, "no choice", id="single-level"),
         pytest.param("ordinal", {"values": (1.0, 2.0, 1.0)}, "twice", id="repeated-level"),

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from robot_tasks.control.impedance import POSTURE, ImpedanceController, posture_torque, self_motion
+from robot_tasks.control.impedance import POSTURE, ImpedanceController, on_leash, posture_torque, self_motion
 from robot_tasks.geometry import Pose
 
 START = (0.56, 0.08, -0.15, -1.72, 1.07, 1.41, -0.69)
@@ -85,6 +85,20 @@ def test_joint_torques_stay_within_the_effort_limits(arm):
     for _ in range(50):
         arm.run(TICK)
         assert (np.abs(arm.simulation.data.qfrc_actuator) <= limits + 1e-9).all()
+
+
+def test_a_far_reference_pulls_no_harder_than_the_leash_allows(arm):
+    arm.pose = Pose((-1.5, 1.5, 1.5), arm.pose.quaternion)
+    for _ in range(20):
+        before = arm.tip.copy()
+        arm.controller.update(arm.pose, TICK)
+        assert np.linalg.norm(arm.simulation.data.ctrl[0:6:2] - before) == pytest.approx(0.25)
+        arm.run(TICK)
+
+
+def test_a_leash_shortens_along_the_line_and_leaves_near_references_alone():
+    assert on_leash((1.0, 2.0, 3.0), [1.0, 2.0, 2.8]) == (1.0, 2.0, 3.0)
+    assert on_leash((1.0, 0.6, 0.8), [1.0, 0.0, 0.0]) == pytest.approx((1.0, 0.15, 0.2))
 
 
 @pytest.mark.parametrize("seed", range(5))

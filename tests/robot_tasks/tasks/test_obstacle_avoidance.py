@@ -6,7 +6,7 @@ import pytest
 from robot_tasks.evaluation import measure
 from robot_tasks.rollout import rollout
 from robot_tasks.tasks.obstacle_avoidance import ENGINE, GOAL, OBSTACLE_AVOIDANCE, STARTS, TABLE
-from tests.robot_tasks.conftest import OPERATOR_MEANS, PRESSED_ON_THE_TABLE, STRAIGHT_THROUGH_THE_ENGINE
+from tests.robot_tasks.conftest import LOWERED_ONTO_THE_ENGINE, OPERATOR_MEANS, STRAIGHT_THROUGH_THE_ENGINE
 
 TASK = OBSTACLE_AVOIDANCE
 
@@ -62,8 +62,8 @@ def test_heading_straight_for_the_goal_gets_stuck_at_the_engine(simulation):
     assert episode.contact.seconds > 5.0
 
 
-def test_pressing_on_the_table_is_a_touch_and_not_a_success(simulation):
-    episode = run(simulation, PRESSED_ON_THE_TABLE)
+def test_lowering_the_forearm_onto_the_engine_is_a_touch_and_not_a_success(simulation):
+    episode = run(simulation, LOWERED_ONTO_THE_ENGINE)
     assert not episode.is_success
     assert episode.contact.touches >= 1
     assert episode.contact.deepest_penetration < 1e-3
@@ -75,7 +75,7 @@ def test_a_collision_with_the_engine_improves_no_objective(simulation):
     assert bad["safety"] < good["safety"]
 
 
-@pytest.mark.parametrize("bad", [STRAIGHT_THROUGH_THE_ENGINE, PRESSED_ON_THE_TABLE])
+@pytest.mark.parametrize("bad", [STRAIGHT_THROUGH_THE_ENGINE, LOWERED_ONTO_THE_ENGINE])
 def test_a_collision_ends_no_charge(simulation, bad):
     episode = run(simulation, bad)
     for term in TASK.objectives["safety"]:
