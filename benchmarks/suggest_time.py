@@ -1,0 +1,125 @@
+"""Measure the time of one suggestion as the history grows, and of starting the program.
+
+    python benchmarks/suggest_time.py [--repeats 7] [--output benchmarks/results]
+
+A suggestion is what `ask` does on a history of n evaluations of a two-objective problem in six dimensions, the fit of
+the model included. CPU time of one process with one thread of linear algebra; medians over the repeats, each with
+another seed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from reporting import ResultTable, machine
+
+from hypermap_lite import Evaluation, Optimizer, State
+from hypermap_lite.evaluation.outcome import Suggestion
+
+DIMENSION = 6
+SIZES = (20, 50, 60, 100, 200)
+METHODS: dict[str, dict[str, Any]] = {
+    "default": {},
+    "paper preset": {"preset": "paper"},
+    "random forest": {"surrogate": {"type": "random_forest"}},
+}
+COLUMNS = ("what", "n", "repeat", "seconds")
+
+
+def dtlz2(x: np.ndarray) -> dict[str, float]:
+    """Return the two objectives of DTLZ2 (Deb et al. 2005) with a little noise of the point's own."""
+    g = float(((x[1:] - 0.5) ** 2).sum())
+    noise = np.random.default_rng(int(1e9 * x[0])).standard_normal(2)
+    angle = x[0] * np.pi / 2
+    return {"f1": (1 + g) * np.cos(angle) + 0.02 * noise[0], "f2": (1 + g) * np.sin(angle) + 0.02 * noise[1]}
+
+
+def evaluations(n: int, seed: int) -> list[Evaluation]:
+    """Return n evaluations as a run leaves them: a spread-out design, then points around the front."""
+    rng = np.random.default_rng(seed)
+    X = rng.random((n, DIMENSION))
+    X[12:, 1:] = np.clip(0.5 + 0.15 * rng.standard_normal((max(n - 12, 0), DIMENSION - 1)), 0, 1)
+    return [
+        Evaluation(
+            suggestion=Suggestion(
+                trial=i,
+                configuration={f"x{j}": float(v) for j, v in enumerate(x)},
+                phase="design" if i < 12 else "model",
+            ),
+            state=State.COMPLETED,
+            values=dtlz2(x),
+        )
+        for i, x in enumerate(X)
+    ]
+
+
+def suggestion_seconds(what: str, n: int, repeat: int) -> dict[str, Any]:
+    """Time the first and the second suggestion after n evaluations, and return the second.
+
+    A run pays for the first what it pays here for the second: what the first one computes besides (the fits that later
+    ones start from) a run has kept.
+    """
+    scenario = {
+        "seed": repeat,
+        "input_parameters": {f"x{j}": {"parameter_type": "real", "values": [0, 1]} for j in range(DIMENSION)},
+        "objectives": [{"name": "f1"}, {"name": "f2"}],
+        "design_of_experiment": {"number_of_samples": 12},
+        "budget": {"evaluations": n + 10},
+        **METHODS[what],
+    }
+    rows = evaluations(n, repeat)
+    optimizer = Optimizer(scenario, evaluations=rows[:-1])
+    (suggestion,) = optimizer.ask()
+    last = rows[-1]
+    optimizer.tell(suggestion, last.values)
+    start = time.process_time()
+    optimizer.ask()
+    return {"what": what, "n": n, "repeat": repeat, "seconds": time.process_time() - start}
+
+
+def start_seconds(what: str, n: int, repeat: int) -> dict[str, Any]:
+    """Time a command of the program, wall clock."""
+    start = time.perf_counter()
+    subprocess.run([sys.executable, "-m", "hypermap_lite", what], capture_output=True, check=True)
+    return {"what": what, "n": n, "repeat": repeat, "seconds": time.perf_counter() - start}
+
+
+def main() -> None:
+    """Measure the missing cases and write the result page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--repeats", type=int, default=7)
+    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "results")
+    arguments = parser.parse_args()
+    path = arguments.output / "suggest_time.csv"
+    path.unlink(missing_ok=True)  # times of different days do not mix
+    table = ResultTable(path, COLUMNS, key=("what", "n", "repeat"))
+    for repeat in range(arguments.repeats):
+        for what in METHODS:
+            for n in SIZES:
+                table.fill({"what": what, "n": n, "repeat": repeat}, suggestion_seconds)
+        table.fill({"what": "--help", "n": 0, "repeat": repeat}, start_seconds)
+    cases = dict.fromkeys((row["what"], int(row["n"])) for row in table.rows)
+    rows = []
+    for what, n in cases:
+        seconds = [float(r["seconds"]) for r in table.rows if (r["what"], int(r["n"])) == (what, n)]
+        rows.append((what, str(n), *(f"{f(seconds):.3f}" for f in (min, statistics.median, max))))
+    table.write_page(
+        arguments.output / "suggest_time.md",
+        title="Time of a suggestion",
+        command="python benchmarks/suggest_time.py",
+        text=f"{machine()}\nCPU seconds of one suggestion, fit included, after n evaluations (d = 6, two objectives, "
+        "one thread); wall-clock\nseconds of `--help`.",
+        header=("what", "n", "min", "median", "max"),
+        rows=rows,
+    )
+
+
+if __name__ == "__main__":
+    main()
