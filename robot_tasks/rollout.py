@@ -15,6 +15,7 @@ import numpy as np
 
 from robot_tasks.contacts import Clearance, ContactMonitor
 from robot_tasks.control import ImpedanceController
+from robot_tasks.control.impedance import TIP
 from robot_tasks.episode import Episode
 from robot_tasks.geometry import Pose
 from robot_tasks.motion import MotionGenerator
@@ -27,8 +28,6 @@ TICK: Final = 0.02
 """Seconds between decisions and between updates of the reference."""
 TICKS_PER_SAMPLE: Final = 5
 """Ticks between samples of the episode: rewards are summed over a 10 Hz grid."""
-TIP: Final = "tip"
-"""Site whose pose is controlled and rewarded."""
 STILL_SPEED: Final = 1e-4
 """Joint speed in [rad/s] below which the arm counts as standing still."""
 
