@@ -83,15 +83,15 @@ def test_row_is_the_mean_of_its_replicates(tmp_path):
 
 @pytest.mark.parametrize(("batch", "replicates"), [(1, 1), (1, 3), (3, 1), (3, 2), (10, 2)])
 def test_run_killed_at_any_call_ends_like_one_that_was_not(tmp_path, batch, replicates):
-    options = {"batch": batch, "replicates": replicates}
+    options = {"n": 5, "batch": batch, "replicates": replicates}
     run(tmp_path / "whole", **options)
-    for n in range(7 * replicates):
+    for n in range(5 * replicates):
         path = tmp_path / str(n)
         with pytest.raises(Killed):
             run(path, KilledAt(n), **options)
         kept = rows(path, "evaluations.csv") if n else []
         assert len(kept) == n
-        assert run(path, KilledAt(7 * replicates - n), **options) is StopReason.BUDGET
+        assert run(path, KilledAt(5 * replicates - n), **options) is StopReason.BUDGET
         assert everything(path) == everything(tmp_path / "whole")
 
 

@@ -106,7 +106,7 @@ def test_folder_that_was_refused_is_not_left_locked(tmp_path):
         pass
 
 
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(deadline=None, max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_cut_at_any_byte_loses_at_most_the_row_that_was_cut(tmp_path_factory, data):
     path = tmp_path_factory.mktemp("run")
