@@ -14,6 +14,7 @@ from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, Maximizer
+from hypermap_lite.objectives import reference_point_of
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.streams import Stream, generator
@@ -138,7 +139,7 @@ class BayesianOptimizer(Optimizer):
 
     def _context(self, rng: Rng) -> AcquisitionContext:
         X, Y = self.history.X(), self.history.Y()
-        normalization = Normalization.of_front(Y)
+        normalization = Normalization.of_front(Y, reference_point_of(self.history.objectives))
         return AcquisitionContext(
             posterior=self._posterior(X, Y),
             X=X,

@@ -39,12 +39,16 @@ class Normalization:
     """Shape (m,): the length that becomes 1, the range of the front."""
 
     @classmethod
-    def of_front(cls, Y: FloatArray) -> Normalization:
+    def of_front(cls, Y: FloatArray, reference_point: FloatArray | None = None) -> Normalization:
         """Take the best and the worst values of the non-dominated rows of Y, shape (n, m).
 
+        With a reference point only the part of the front that dominates it counts, as long as there is one: what is
+        worse than the reference point in some objective is of no interest, however good it is in the others.
         Where the front has no extent in an objective, all rows are taken; where those have none, scale 1.
         """
         front = Y[non_dominated(Y)]
+        if reference_point is not None and (inside := (front < reference_point).all(axis=1)).any():
+            front = front[inside]
         offset = front.min(axis=0)
         scale = front.max(axis=0) - offset
         overall = Y.max(axis=0) - Y.min(axis=0)

@@ -55,6 +55,14 @@ def test_normalization_maps_the_front_to_the_unit_box() -> None:
     assert normalization(points[:2]).tolist() == [[0, 1], [1, 0]]
 
 
+def test_what_is_worse_than_the_reference_point_does_not_stretch_the_normalization() -> None:
+    points = np.array([[0.0, 900.0], [1.0, 10.0], [5.0, 4.0], [800.0, 0.0]])
+    normalization = Normalization.of_front(points, np.array([10.0, 20.0]))
+    assert normalization(points[1:3]).tolist() == [[0, 1], [1, 0]]
+    nothing_inside = Normalization.of_front(points, np.array([-1.0, -1.0]))
+    assert nothing_inside.scale.tolist() == [800, 900]
+
+
 def test_normalization_of_a_single_best_point_takes_the_range_of_all() -> None:
     normalization = Normalization.of_front(np.array([[0.0, 0.0], [4.0, 2.0]]))
     assert normalization.scale.tolist() == [4, 2]
