@@ -1,0 +1,77 @@
+"""The composition root."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite import assembly
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.scenario.loader import load_scenario
+from hypermap_lite.surrogates import RandomForest
+from tests.optimizers.runs import scenario_of
+
+PARAMETERS = {
+    "r": {"parameter_type": "real", "values": [1, 100], "scale": "log"},
+    "o": {"parameter_type": "ordinal", "values": [8, 2, 4], "prior": {"type": "weights", "weights": [5, 1, 2]}},
+    "c": {"parameter_type": "categorical", "values": ["a", "b"]},
+    "n": {"parameter_type": "integer", "values": [0, 9]},
+}
+
+
+def load(**changes: object):
+    return load_scenario(scenario_of(input_parameters=PARAMETERS) | changes)
+
+
+def test_the_space_has_the_parameters_in_their_order() -> None:
+    space = assembly.build_space(load())
+    assert space.names == ("r", "o", "c", "n")
+    assert space.encode([{"r": 10, "o": 2, "c": "b", "n": 9}])[0] == pytest.approx([0.5, 1 / 6, 0.75, 0.95])
+
+
+def test_weights_of_an_ordinal_follow_the_values_as_written() -> None:
+    scenario = load()
+    space = assembly.build_space(scenario)
+    prior = assembly.build_prior(scenario, space)
+    points = space.encode([{"r": 10, "o": o, "c": "a", "n": 0} for o in (8, 2, 4)])
+    assert np.exp(prior.log_density(points)) / 3 == pytest.approx([5 / 8, 1 / 8, 2 / 8])
+
+
+def test_joint_priors_find_their_axes() -> None:
+    joint = [{"type": "mixture", "components": [{"mean": {"n": 3, "r": 10}, "std": {"n": 0.1, "r": 0.01}}]}]
+    scenario = load(priors=joint)
+    space = assembly.build_space(scenario)
+    x = space.decode(assembly.build_prior(scenario, space).sample(5, np.random.default_rng(0)))
+    assert {c["n"] for c in x} == {3}
+    assert [c["r"] for c in x] == pytest.approx([10] * 5, rel=0.1)
+
+
+def test_a_parameter_with_two_priors_is_refused() -> None:
+    joint = [{"type": "mixture", "components": [{"mean": {"o": 3}, "std": {"o": 1}}]}]
+    with pytest.raises(ScenarioError, match=r"\$\.priors\[0\].*'o'"):
+        assembly.validate(load(priors=joint))
+
+
+def test_the_automatic_design_draws_from_priors_where_there_are_some() -> None:
+    without = {"r": PARAMETERS["r"]}
+    assert type(assembly.build_design(load())).__name__ == "PriorSampling"
+    assert type(assembly.build_design(load(input_parameters=without))).__name__ == "Sobol"
+
+
+def test_options_reach_the_member() -> None:
+    method = assembly.build_method(load(surrogate={"type": "random_forest", "number_of_trees": 7}))
+    assert method.surrogate == RandomForest(number_of_trees=7)
+
+
+def test_a_member_that_refuses_its_options_is_named_by_its_place() -> None:
+    broken = PARAMETERS | {"o": {**PARAMETERS["o"], "prior": {"type": "weights", "weights": [1, 1]}}}
+    scenario = load(input_parameters=broken)
+    with pytest.raises(ScenarioError, match=r"\$\.input_parameters\.o\.prior\.weights: 2 weights for the 3 levels"):
+        assembly.validate(scenario)
+
+
+def test_without_an_evaluator_the_message_says_what_to_do() -> None:
+    with pytest.raises(ScenarioError, match=r"hypermap_lite\.optimize"):
+        assembly.build_evaluator(load())
+
+
+def test_a_given_function_takes_the_place_of_the_evaluator() -> None:
+    assert assembly.build_evaluator(load(), lambda c: {"near": 0, "far": 0}) is not None
