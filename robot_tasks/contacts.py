@@ -11,6 +11,8 @@ import numpy as np
 from robot_tasks.episode import ContactRecord
 from robot_tasks.simulation import Simulation
 
+HIDDEN_GROUP: Final = 3
+"""Group of geoms that only stand in for a visible one in contacts."""
 RELEASE: Final = 0.1
 """Seconds without contact after which the next contact counts as another touch."""
 
@@ -48,7 +50,9 @@ class ContactMonitor:
 
     def is_near(self) -> bool:
         """Tell whether an untouchable geom is touched or closer than the `gap` of the scene's geoms."""
-        return self._data.ncon > 0 and any(self._is_untouchable(pair) for pair in self._data.contact.geom.tolist())
+        if not self._data.ncon:
+            return False
+        return not self._untouchable.isdisjoint(self._data.contact.geom.ravel().tolist())
 
     def observe(self) -> None:
         """Take in the contacts of one physics step whose forces have been computed."""
@@ -74,7 +78,7 @@ class ContactMonitor:
 
 
 class Clearance:
-    """Measure how near arm and tool come to a geom.
+    """Measure how near arm and tool, in the shapes one sees, come to a geom.
 
     Parameters
     ----------
@@ -91,8 +95,8 @@ class Clearance:
         self._data = simulation.data
         self._obstacle = simulation.id_of("geom", obstacle)
         is_moving = simulation.model.body_weldid[simulation.model.geom_bodyid] > 0
-        is_solid = simulation.model.geom_contype > 0
-        self._geoms = np.flatnonzero(is_moving & is_solid).tolist()
+        is_visible = simulation.model.geom_group < HIDDEN_GROUP
+        self._geoms = np.flatnonzero(is_moving & is_visible).tolist()
         self.smallest = reach
 
     def observe(self) -> None:
