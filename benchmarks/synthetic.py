@@ -113,7 +113,6 @@ PROBLEMS: Mapping[str, Problem] = {
 METHODS: Mapping[str, dict[str, Any]] = {
     "default": {},
     "paper preset": {"preset": "paper"},
-    "random forest": {"surrogate": {"type": "random_forest"}},
     "Sobol": {"design_of_experiment": {"type": "sobol"}},
 }
 """Changes to the default scenario; Sobol spends the whole budget on the design."""
