@@ -114,8 +114,12 @@ def main() -> None:
         writer.writerow(("variant", "seed", "evaluation", "hypervolume"))
         for variant, values in traces.items():
             writer.writerows((variant, s, n + 1, f"{v:.8g}") for s, row in enumerate(values) for n, v in enumerate(row))
-    patterns = [f"{variant}={runs / VARIANTS[variant]}/*" for variant in VARIANTS]
-    plot_function("hypervolume")(patterns, arguments.output / f"{stem}.png")
+    repetitions = [(folder, variant) for variant, paths in folders.items() for folder in paths]
+    plot_function("hypervolume")(
+        [folder for folder, _ in repetitions],
+        arguments.output / f"{stem}.png",
+        labels=[label for _, label in repetitions],
+    )
     header = ("variant", "seeds", "final hypervolume", "ratio to no prior (95 %)", "evaluations to its final mean")
     page = [
         f"# Priors on obstacle avoidance ({arguments.preset} method)",

@@ -71,7 +71,7 @@ class Optimizer:
 
     @property
     def pending(self) -> list[Suggestion]:
-        """Suggestions that are not in the history yet."""
+        """Suggestions that wait for their result."""
         return self._optimizer.pending
 
     def ask(self, n: int = 1) -> list[Suggestion]:

@@ -28,7 +28,8 @@ def reals(draw: st.DrawFn, name: str = "x") -> Parameter:
 def integers(draw: st.DrawFn, name: str = "x") -> Parameter:
     log = draw(st.booleans())
     low = draw(st.integers(1 if log else -1000, 1000))
-    return IntegerParameter(name=name, low=low, high=low + draw(st.integers(1, 5000)), log=log)
+    width = draw(st.one_of(st.integers(1, 5000), st.integers(5000, 10**12)))
+    return IntegerParameter(name=name, low=low, high=low + width, log=log)
 
 
 @st.composite

@@ -42,9 +42,16 @@ def log_h(z: FloatArray) -> FloatArray:
     return np.where(z > -1.0, direct, np.where(z > FAR_TAIL, middle, far))
 
 
-def log_h_slope(z: FloatArray, log_h_of_z: FloatArray) -> FloatArray:
-    """Return the derivative of `log_h`, Phi(z) / h(z); its limit in the far tail is -z."""
-    return np.exp(np.minimum(log_ndtr(z) - log_h_of_z, 700.0))
+def log_h_slope(z: FloatArray) -> FloatArray:
+    """Return the derivative of `log_h`, Phi(z) / (phi(z) + z Phi(z)), which tends to -z in the lower tail."""
+    z = np.asarray(z, dtype=float)
+    upper = np.maximum(z, -1.0)
+    cdf = np.exp(log_ndtr(upper))
+    direct = cdf / (np.exp(-0.5 * upper * upper - LOG_SQRT_2PI) + upper * cdf)
+    size = np.clip(-z, 1.0, -FAR_TAIL)
+    mills = SQRT_HALF_PI * erfcx(size / math.sqrt(2))  # Phi(-size) / phi(size)
+    middle = mills / (1.0 - size * mills)
+    return np.where(z > -1.0, direct, np.where(z > FAR_TAIL, middle, -z))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,7 +89,7 @@ class LinearImprovement:
         score, z, terms = self._score(c)
         with np.errstate(invalid="ignore"):
             share = np.nan_to_num(np.exp(terms - (score + math.log(len(z)))[None, :, None]))  # each term's part
-        slope = log_h_slope(z, log_h(z))
+        slope = log_h_slope(z)
         by_mean = -share * slope / c.std
         by_std = share * (1.0 - slope * z) / c.std
         assert c.pullback is not None

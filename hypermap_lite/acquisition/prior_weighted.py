@@ -74,7 +74,8 @@ class PriorWeighted:
         """Return the scores, shape (n,), and their gradients, shape (n, d)."""
         score, gradient = self.inner.with_gradient(X)
         relative = self.log_relative_density(X)
-        share = np.exp(self._log_share(X) - relative)  # of the density in density plus floor
+        is_below_peak = self.prior.log_density(X) < self._log_peak
+        share = is_below_peak * (np.exp(self._log_share(X) - relative) if self.floor else 1.0)
         return score + self.weight * relative, gradient + self.weight * share[:, None] * self.prior.log_gradient(X)
 
     def log_relative_density(self, X: FloatArray) -> FloatArray:
@@ -83,5 +84,5 @@ class PriorWeighted:
         return log_share if self.floor == 0 else np.logaddexp(log_share, math.log(self.floor))
 
     def _log_share(self, X: FloatArray) -> FloatArray:
-        """Return log((1 - floor) density / peak), shape (n,)."""
-        return math.log1p(-self.floor) + self.prior.log_density(X) - self._log_peak
+        """Return log((1 - floor) density / peak), shape (n,); the peak is the most, unbounded densities included."""
+        return math.log1p(-self.floor) + np.minimum(self.prior.log_density(X) - self._log_peak, 0.0)

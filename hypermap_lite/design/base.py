@@ -29,7 +29,7 @@ class InitialDesign(Protocol):
         ...
 
 
-def distinct(space: SearchSpace, X: FloatArray, n: int, draw: Callable[[int], FloatArray]) -> FloatArray:
+def distinct(space: SearchSpace, X: FloatArray, n: int, draw: Callable[[int], FloatArray], rng: Rng) -> FloatArray:
     """Snap points to the space, drop repeats, and draw others until there are n, or the space is exhausted.
 
     Parameters
@@ -41,20 +41,28 @@ def distinct(space: SearchSpace, X: FloatArray, n: int, draw: Callable[[int], Fl
     n
         How many are wanted.
     draw
-        Draws a number of further points, shape (k, d).
+        Draws a number of further points, shape (k, d). Where it finds no new ones any more (a narrow prior over a
+        discrete axis, a level of weight zero), the rest is uniform.
+    rng
+        Source of those.
 
     Returns
     -------
     FloatArray
         Different legal points, shape (min(n, n_configurations), d).
     """
+
+    def uniform(k: int) -> FloatArray:
+        return rng.random((k, space.dimension))
+
     points = space.snap(X)
     points = points[space.unseen(points, ())]
-    for _ in range(MAX_ROUNDS):
-        if len(points) >= min(n, space.n_configurations):
-            return points[:n]
-        more = np.vstack([points, space.snap(draw(n))])
-        points = more[space.unseen(more, ())]
+    for draw_more in (draw, uniform):
+        for _ in range(MAX_ROUNDS):
+            if len(points) >= min(n, space.n_configurations):
+                return points[:n]
+            more = np.vstack([points, space.snap(draw_more(n))])
+            points = more[space.unseen(more, ())]
     if space.n_configurations <= ENUMERATION_LIMIT:
         rest = np.vstack([points, space.enumerate()])
         points = rest[space.unseen(rest, ())]

@@ -39,8 +39,7 @@ class Grid:
         axes = []
         for parameter, count in zip(space.parameters, self._counts(space, levels), strict=True):
             spread = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
-            if parameter.n_levels is not None:
-                chosen = np.round(spread * (parameter.n_levels - 1)).astype(int)
-                spread = parameter.level_codes()[chosen]
-            axes.append(spread)
+            if count == parameter.n_levels or not parameter.is_ordered:
+                spread = (np.arange(count) + 0.5) / count
+            axes.append(parameter.snap(spread))
         return axes

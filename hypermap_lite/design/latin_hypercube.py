@@ -26,4 +26,4 @@ class LatinHypercube:
         """Return n different points, shape (n, d)."""
         slices = np.column_stack([rng.permutation(n) for _ in range(space.dimension)])
         X = (slices + rng.random((n, space.dimension))) / n
-        return distinct(space, X, n, lambda k: rng.random((k, space.dimension)))
+        return distinct(space, X, n, lambda k: rng.random((k, space.dimension)), rng)

@@ -20,4 +20,4 @@ class PriorSampling:
         def draw(k: int) -> FloatArray:
             return prior.sample(k, rng)
 
-        return distinct(space, draw(n), n, draw)
+        return distinct(space, draw(n), n, draw, rng)

@@ -20,4 +20,4 @@ class RandomSampling:
         def draw(k: int) -> FloatArray:
             return rng.random((k, space.dimension))
 
-        return distinct(space, draw(n), n, draw)
+        return distinct(space, draw(n), n, draw, rng)

@@ -22,7 +22,7 @@ class Sobol:
     def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
         """Return n different points, shape (n, d)."""
         X = sobol_points(n, space.dimension, rng)
-        return distinct(space, X, n, lambda k: rng.random((k, space.dimension)))
+        return distinct(space, X, n, lambda k: rng.random((k, space.dimension)), rng)
 
 
 def sobol_points(n: int, dimension: int, rng: Rng) -> FloatArray:

@@ -12,6 +12,9 @@ from hypermap_lite.objectives import Objective, values_of
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import FloatArray
 
+LARGEST = 1e150
+"""Size at which objective values are cut for the models; the files keep them as they are."""
+
 
 class History:
     """All finished evaluations of a run, trial 0 first, without gaps."""
@@ -27,10 +30,16 @@ class History:
         Raises
         ------
         UsageError
-            If its trial number is not the next one.
+            If its trial number is not the next one, or it is not of this space and these objectives.
         """
-        if evaluation.trial != len(self):
-            raise UsageError(f"trial {evaluation.trial} cannot be recorded: the next trial is {len(self)}")
+        trial = evaluation.trial
+        if trial != len(self):
+            raise UsageError(f"trial {trial} cannot be recorded: the next trial is {len(self)}")
+        if not self.space.contains(evaluation.configuration):
+            raise UsageError(f"trial {trial} is not of this search space: {dict(evaluation.configuration)}")
+        missing = [o.name for o in self.objectives if o.name not in evaluation.values]
+        if evaluation.is_completed and missing:
+            raise UsageError(f"trial {trial} has no value of the objective '{missing[0]}'")
         self._evaluations.append(evaluation)
 
     def extend(self, evaluations: Iterable[Evaluation]) -> None:
@@ -57,9 +66,12 @@ class History:
         return self.space.encode([e.configuration for e in self.completed])
 
     def Y(self) -> FloatArray:  # noqa: N802 - the field's name
-        """Return the objectives of the completed evaluations, to be minimized, shape (n, m)."""
+        """Return the objectives of the completed evaluations, to be minimized, shape (n, m).
+
+        Values beyond 1e150 in size are cut there: models square them.
+        """
         rows = [values_of(self.objectives, e.values) for e in self.completed]
-        return np.array(rows).reshape(len(rows), len(self.objectives))
+        return np.clip(np.array(rows).reshape(len(rows), len(self.objectives)), -LARGEST, LARGEST)
 
     def X_all(self) -> FloatArray:  # noqa: N802 - the field's name
         """Return the codes of all evaluations, whatever their state, shape (len(self), d)."""

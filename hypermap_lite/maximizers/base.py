@@ -44,6 +44,11 @@ class MaximizationProblem:
 
     rng: Rng
 
+    def score(self, X: FloatArray) -> FloatArray:
+        """Return the scores of n points, shape (n,); what is not a number is the worst."""
+        scores = self.scorer(X)
+        return np.where(np.isnan(scores), -np.inf, scores)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Maximum:

@@ -35,10 +35,10 @@ class LocalSearch:
         X = draw_candidates(problem, self.candidates)
         if not len(X):
             return None
-        scores = problem.scorer(X)
+        scores = problem.score(X)
         if problem.space.n_configurations <= self.candidates:
             return best_unseen(problem, X, scores)
         axes = np.ones(problem.space.dimension, dtype=bool)
-        refined = [climb(problem.space, problem.scorer, x, axes) for x in choose_starts(X, scores, self.starts)]
+        refined = [climb(problem.space, problem.score, x, axes) for x in choose_starts(X, scores, self.starts)]
         points = np.vstack([*[x for x, _ in refined], X])
         return best_unseen(problem, problem.space.snap(points), np.concatenate([[s for _, s in refined], scores]))

@@ -51,17 +51,17 @@ class MultistartGradient:
         if not problem.scorer.is_differentiable or not is_real.any():
             return LocalSearch(candidates=self.candidates, starts=self.starts).maximize(problem)
         X = draw_candidates(problem, self.candidates)
-        scores = problem.scorer(X)
+        scores = problem.score(X)
         refined = choose_starts(X, scores, self.starts)
         for _ in range(1 if is_real.all() else ROUNDS):
             before = refined
             refined = self._ascend(problem, refined)
             if not is_real.all():
-                refined = np.array([climb(problem.space, problem.scorer, x, ~is_real)[0] for x in refined])
+                refined = np.array([climb(problem.space, problem.score, x, ~is_real)[0] for x in refined])
             if np.array_equal(before, refined):
                 break
         points = np.vstack([refined, X])
-        return best_unseen(problem, points, np.concatenate([problem.scorer(refined), scores]))
+        return best_unseen(problem, points, np.concatenate([problem.score(refined), scores]))
 
     def _ascend(self, problem: MaximizationProblem, starts: FloatArray) -> FloatArray:
         """Improve k starts along the real axes, shape (k, d)."""
@@ -84,5 +84,5 @@ class MultistartGradient:
         )
         moved = starts.copy()
         moved[:, is_real] = np.clip(result.x, 0.0, 1.0).reshape(len(starts), -1)
-        better = problem.scorer(moved) > problem.scorer(starts)
+        better = problem.score(moved) > problem.score(starts)
         return np.where(better[:, None], moved, starts)

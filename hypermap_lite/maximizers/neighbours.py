@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 
-from hypermap_lite.acquisition.base import Scorer
 from hypermap_lite.space.parameter import Parameter
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import BoolArray, FloatArray
@@ -12,33 +14,29 @@ from hypermap_lite.typing import BoolArray, FloatArray
 FEW_LEVELS = 16
 """A discrete axis with at most so many levels is tried whole, another by steps in both directions."""
 
-LEVEL_STEPS = (1, 2, 4, 8, 16, 64, 256)
+LEVEL_STEP_GROWTH = 4
+"""Steps along an axis of many levels are 1, 4, 16, ... levels in both directions."""
+
 REAL_STEPS = (0.1, 0.03, 0.01, 0.003, 0.001)
-"""Step sizes tried in both directions: in levels, and in units of the cube."""
+"""Steps along an axis tried in both directions, in units of the cube."""
 
 MAX_MOVES = 100
 
 
 def axis_neighbours(parameter: Parameter, code: float) -> FloatArray:
     """Return the codes one exchange away from a code on one axis, both directions, shape (k,)."""
+    steps = np.array([sign * step for step in REAL_STEPS for sign in (-1.0, 1.0)])
+    around = np.unique(np.clip(code + steps, 0.0, 1.0))
     if parameter.n_levels is None:
-        steps = np.array([sign * step for step in REAL_STEPS for sign in (-1.0, 1.0)])
-        return np.unique(np.clip(code + steps, 0.0, 1.0))
+        return around
     level = int(parameter.level_index(np.array([code]))[0])
     if parameter.n_levels <= FEW_LEVELS or not parameter.is_ordered:
         levels = np.arange(parameter.n_levels)
     else:
-        levels = level + np.array([sign * step for step in LEVEL_STEPS for sign in (-1, 1)])
-        levels = levels[(levels >= 0) & (levels < parameter.n_levels)]
-    return code_of_levels(parameter, levels[levels != level])
-
-
-def code_of_levels(parameter: Parameter, levels: np.typing.NDArray[np.int64]) -> FloatArray:
-    """Return the codes of some levels without listing all of a large range, shape (k,)."""
-    edges = (levels + 0.5) / (parameter.n_levels or 1)
-    if (parameter.n_levels or 0) > 10_000:
-        return parameter.snap(edges)
-    return parameter.level_codes()[levels]
+        sizes = LEVEL_STEP_GROWTH ** np.arange(int(math.log(parameter.n_levels, LEVEL_STEP_GROWTH)) + 1)
+        levels = np.concatenate([level - sizes, level + sizes, parameter.level_index(around)])
+        levels = np.unique(levels[(levels >= 0) & (levels < parameter.n_levels)])
+    return parameter.codes_of_levels(levels[levels != level])
 
 
 def neighbours(space: SearchSpace, x: FloatArray, axes: BoolArray) -> FloatArray:
@@ -52,7 +50,9 @@ def neighbours(space: SearchSpace, x: FloatArray, axes: BoolArray) -> FloatArray
     return np.vstack(rows) if rows else np.empty((0, len(x)))
 
 
-def climb(space: SearchSpace, scorer: Scorer, x: FloatArray, axes: BoolArray) -> tuple[FloatArray, float]:
+def climb(
+    space: SearchSpace, score_of: Callable[[FloatArray], FloatArray], x: FloatArray, axes: BoolArray
+) -> tuple[FloatArray, float]:
     """Move to the best one-exchange neighbour along the chosen axes until none is better.
 
     Returns
@@ -60,12 +60,12 @@ def climb(space: SearchSpace, scorer: Scorer, x: FloatArray, axes: BoolArray) ->
     tuple
         The point, shape (d,), and its score.
     """
-    score = float(scorer(x[None])[0])
+    score = float(score_of(x[None])[0])
     for _ in range(MAX_MOVES):
         around = neighbours(space, x, axes)
         if not len(around):
             break
-        scores = scorer(around)
+        scores = score_of(around)
         best = int(np.argmax(scores))
         if not scores[best] > score:
             break

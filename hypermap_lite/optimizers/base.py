@@ -45,9 +45,14 @@ class Optimizer(ABC):
 
     @property
     def pending(self) -> list[Suggestion]:
-        """Suggestions that are not in the history yet, in the order of their trials."""
-        in_flight = self._pending | {trial: evaluation.suggestion for trial, evaluation in self._told.items()}
-        return [in_flight[trial] for trial in sorted(in_flight)]
+        """Suggestions that wait for their result, in the order of their trials."""
+        return [self._pending[trial] for trial in sorted(self._pending)]
+
+    @property
+    def in_flight(self) -> list[Suggestion]:
+        """Suggestions that are not in the history: pending ones, and those told before an earlier one."""
+        waiting = self._pending | {trial: evaluation.suggestion for trial, evaluation in self._told.items()}
+        return [waiting[trial] for trial in sorted(waiting)]
 
     def ask(self, n: int = 1) -> list[Suggestion]:
         """Return up to n new suggestions; fewer only when a finite space holds no other configuration.
@@ -60,15 +65,20 @@ class Optimizer(ABC):
         if n < 1:
             raise UsageError(f"ask({n}): the number of suggestions must be at least 1")
         suggestions: list[Suggestion] = []
-        with single_threaded():
-            for _ in range(n):
-                start = process_time()
-                suggestion = self._suggest(len(self.history) + len(self.pending))
-                if suggestion is None:
-                    break
-                suggestion = replace(suggestion, seconds=process_time() - start)
-                self._pending[suggestion.trial] = suggestion
-                suggestions.append(suggestion)
+        try:
+            with single_threaded():
+                while len(suggestions) < n:
+                    start = process_time()
+                    suggestion = self._suggest(len(self.history) + len(self.in_flight))
+                    if suggestion is None:
+                        break
+                    suggestion = replace(suggestion, seconds=process_time() - start)
+                    self._pending[suggestion.trial] = suggestion
+                    suggestions.append(suggestion)
+        except BaseException:
+            for suggestion in suggestions:  # nobody got them, so nobody could ever tell them
+                del self._pending[suggestion.trial]
+            raise
         return suggestions
 
     def tell(self, evaluations: Sequence[Evaluation]) -> None:
@@ -81,25 +91,37 @@ class Optimizer(ABC):
         UsageError
             If a trial was never asked for, or was told before.
         """
+        for i, evaluation in enumerate(evaluations):
+            self._require_pending(evaluation.trial, "tell")
+            if evaluation.trial in [other.trial for other in evaluations[:i]]:
+                raise UsageError(f"tell: trial {evaluation.trial} is told twice")
         for evaluation in evaluations:
-            trial = evaluation.trial
-            if trial not in self._pending:
-                known = ", ".join(map(str, sorted(self._pending))) or "none; call ask() first"
-                raise UsageError(f"tell: trial {trial} is not pending (pending: {known})")
-            self._told[trial] = evaluation
-            del self._pending[trial]
+            self._told[evaluation.trial] = evaluation
+            del self._pending[evaluation.trial]
         while (following := self._told.pop(len(self.history), None)) is not None:
             self.history.append(following)
 
     def adopt(self, suggestion: Suggestion) -> None:
-        """Replace the pending suggestion of the same trial, as when part of it has been evaluated before a stop."""
+        """Replace the pending suggestion of the same trial, as when part of it has been evaluated before a stop.
+
+        Raises
+        ------
+        UsageError
+            If the trial is not pending.
+        """
+        self._require_pending(suggestion.trial, "adopt")
         self._pending[suggestion.trial] = suggestion
 
+    def _require_pending(self, trial: int, verb: str) -> None:
+        if trial not in self._pending:
+            known = ", ".join(map(str, sorted(self._pending))) or "none; call ask() first"
+            raise UsageError(f"{verb}: trial {trial} is not pending (pending: {known})")
+
     def taken_keys(self) -> list[bytes]:
-        """Return the keys of all configurations that are in the history or pending."""
+        """Return the keys of all configurations that are in the history or on their way to it."""
         space = self.history.space
-        pending = space.encode([s.configuration for s in self.pending])
-        return space.keys(np.vstack([self.history.X_all(), pending]))
+        in_flight = space.encode([s.configuration for s in self.in_flight])
+        return space.keys(np.vstack([self.history.X_all(), in_flight]))
 
     @abstractmethod
     def _suggest(self, trial: int) -> Suggestion | None:

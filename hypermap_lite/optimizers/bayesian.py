@@ -23,6 +23,9 @@ from hypermap_lite.scalarization.base import Normalization, Scalarization, Weigh
 from hypermap_lite.surrogates.base import Posterior, Surrogate
 from hypermap_lite.typing import FloatArray, Rng
 
+MODEL = "model"
+"""Phase of a suggestion that comes from the model."""
+
 MIN_COMPLETED = 2
 """With fewer completed evaluations there is nothing to model."""
 
@@ -112,8 +115,8 @@ class BayesianOptimizer(Optimizer):
         space = self.history.space
         context = self._context(rng)
         scorer: Scorer = self._method.acquisition.scorer(context)
-        weight = self._prior_weight(trial)
-        if weight is not None and self._method.prior_weighting is not None:
+        weight = self._prior_weight()
+        if weight and self._method.prior_weighting is not None:
             floor = self._method.prior_weighting.floor
             scorer = PriorWeighted(inner=scorer, prior=self._prior, weight=weight, floor=floor)
         best = self._method.maximizer.maximize(
@@ -132,7 +135,7 @@ class BayesianOptimizer(Optimizer):
         return Suggestion(
             trial=trial,
             configuration=configuration,
-            phase="model",
+            phase=MODEL,
             prior_weight=weight,
             acquisition_value=best.score,
         )
@@ -144,18 +147,19 @@ class BayesianOptimizer(Optimizer):
             posterior=self._posterior(X, Y),
             X=X,
             Y=Y,
-            X_pending=self.history.space.encode([s.configuration for s in self.pending]),
+            X_pending=self.history.space.encode([s.configuration for s in self.in_flight]),
             scalarization=self._method.scalarization,
             weights=self._method.weights.sample(self.history.objectives, normalization, rng),
             normalization=normalization,
             rng=rng,
         )
 
-    def _prior_weight(self, trial: int) -> float | None:
+    def _prior_weight(self) -> float | None:
         """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
         if self._method.prior_weighting is None or self._prior.is_uniform:
             return None
-        n = trial - len(self._initial) + 1
+        earlier = [*(e.suggestion for e in self.history), *self.in_flight]
+        n = 1 + sum(suggestion.phase == MODEL for suggestion in earlier)
         return self._method.prior_weighting.weight(n, max(self._budget - len(self._initial), 1))
 
     def _incumbents(self, context: AcquisitionContext) -> FloatArray:

@@ -38,14 +38,12 @@ class InitialPhase:
 
     @cached_property
     def configurations(self) -> list[Configuration]:
-        """The default, if there is one, and the points of the design, without repeats."""
+        """The default, if there is one, and the points of the design; one fewer where it holds the default too."""
         space, rng = self._space, generator(self._seed, Stream.DESIGN)
-        X = np.empty((0, space.dimension))
-        if self._n:
-            X = self._design.points(space, self._prior, self._n, rng)
-        if space.default is not None:
-            X = np.vstack([space.encode([space.default]), X])
-        return space.decode(X[space.unseen(X, ())][: self._n])
+        X = space.encode([] if space.default is None else [space.default])[: self._n]
+        if len(X) < self._n:
+            X = np.vstack([X, self._design.points(space, self._prior, self._n - len(X), rng)])
+        return space.decode(X[space.unseen(X, ())])
 
     def __len__(self) -> int:
         return len(self.configurations)

@@ -15,10 +15,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from hypermap_lite.errors import ScenarioError, nearest
-from hypermap_lite.typing import FloatArray, Rng
+from hypermap_lite.typing import FloatArray, IntArray, Rng
+
+SMALLEST_MASS = 1e-12
+"""Masses of bins below this are taken from the density instead of from a difference of probabilities."""
 
 MAX_BINS = 10_000
-"""An axis with more levels than this is treated as continuous."""
+"""The bins of an axis with more levels than this are not listed, but computed where they are asked for."""
 
 
 class Axis(Protocol):
@@ -46,6 +49,18 @@ class Axis(Protocol):
         """Return the edges of the levels' bins, shape (n_levels + 1,)."""
         ...
 
+    def level_index(self, codes: FloatArray) -> IntArray:
+        """Return which level each code decodes to, shape (n,)."""
+        ...
+
+    def codes_of_levels(self, levels: IntArray) -> FloatArray:
+        """Return the codes of some levels, shape (n,)."""
+        ...
+
+    def bins_of_levels(self, levels: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return lower and upper edges of the bins of some levels, both shape (n,)."""
+        ...
+
 
 class Density(ABC):
     """A probability density on the unit interval."""
@@ -59,6 +74,10 @@ class Density(ABC):
     @abstractmethod
     def log_density(self, u: FloatArray) -> FloatArray:
         """Return the log density at points of [0, 1], shape (n,)."""
+
+    @abstractmethod
+    def log_gradient(self, u: FloatArray) -> FloatArray:
+        """Return the derivative of the log density, shape (n,); zero within the bins of a discrete axis."""
 
     @abstractmethod
     def cdf(self, u: FloatArray) -> FloatArray:
@@ -78,6 +97,10 @@ class JointDensity(Protocol):
 
     def log_density(self, U: FloatArray) -> FloatArray:
         """Return the log density at n points, shape (n, k), as shape (n,)."""
+        ...
+
+    def log_gradient(self, U: FloatArray) -> FloatArray:
+        """Return the gradient of the log density at n points, shape (n, k)."""
         ...
 
     def mode(self) -> FloatArray:
@@ -127,6 +150,10 @@ class Histogram(Density):
         with np.errstate(divide="ignore"):
             return np.log(self.masses / np.diff(self.edges))[bins]
 
+    def log_gradient(self, u: FloatArray) -> FloatArray:
+        """Return zeros, shape (n,)."""
+        return np.zeros(len(u))
+
     def cdf(self, u: FloatArray) -> FloatArray:
         """Return the probability of [0, u], shape (n,)."""
         return np.interp(u, self.edges, np.concatenate([[0.0], np.cumsum(self.masses)]))
@@ -137,10 +164,48 @@ class Histogram(Density):
         return float((self.edges[best] + self.edges[best + 1]) / 2)
 
 
+@dataclass(frozen=True, slots=True)
+class ManyLevels(Density):
+    """A density over an axis of many levels: constant in each bin, of the bin's mass."""
+
+    density: Density
+    axis: Axis
+
+    def sample(self, n: int, rng: Rng) -> FloatArray:
+        """Draw n points, shape (n,)."""
+        return self.density.sample(n, rng)
+
+    def log_density(self, u: FloatArray) -> FloatArray:
+        """Return the log density, shape (n,)."""
+        low, high = self.axis.bins_of_levels(self.axis.level_index(u))
+        mass = self.density.cdf(high) - self.density.cdf(low)
+        with np.errstate(divide="ignore"):
+            by_mass = np.log(np.maximum(mass, 0.0) / (high - low))
+        # Far in a tail the difference of two probabilities near one has no digits left; there a bin is narrow.
+        return np.where(mass > SMALLEST_MASS, by_mass, self.density.log_density(u))
+
+    def log_gradient(self, u: FloatArray) -> FloatArray:
+        """Return zeros, shape (n,)."""
+        return np.zeros(len(u))
+
+    def cdf(self, u: FloatArray) -> FloatArray:
+        """Return the probability of [0, u], shape (n,), exact at the edges of the bins."""
+        return self.density.cdf(u)
+
+    def mode(self) -> float:
+        """Return the code of the densest of the levels around the density's mode."""
+        level = self.axis.level_index(np.array([self.density.mode()]))
+        levels = np.clip(level + np.arange(-1, 2), 0, (self.axis.n_levels or 1) - 1)
+        codes = self.axis.codes_of_levels(levels)
+        return float(codes[np.argmax(self.log_density(codes))])
+
+
 def on_levels(density: Density, axis: Axis) -> Density:
     """Turn a density on the unit interval into one over an axis' levels: constant in each bin, of the bin's mass."""
-    if axis.n_levels is None or axis.n_levels > MAX_BINS:
+    if axis.n_levels is None:
         return density
+    if axis.n_levels > MAX_BINS:
+        return ManyLevels(density, axis)
     edges = axis.bin_edges()
     masses = np.maximum(np.diff(density.cdf(edges)), 0.0)
     if masses.sum() <= 0:  # all mass lies between two floating-point numbers

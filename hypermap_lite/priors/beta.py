@@ -23,6 +23,9 @@ SHAPES: Final[Mapping[str, tuple[float, float]]] = {
 .. [1] Souza et al. Bayesian Optimization with a Prior for the Optimum. ECML-PKDD 2021.
 """
 
+SMALLEST, LARGEST = 0.5, 1e4
+"""Range of alpha and beta: below, much of the mass would be closer to a bound than numbers can tell."""
+
 EDGE = 1e-9
 """Densities that are unbounded at a bound are evaluated this far from it."""
 
@@ -49,8 +52,11 @@ class BetaPrior:
                 "$.shape", f"unknown shape {self.shape!r}", allowed=known, hint=nearest(self.shape, SHAPES)
             )
         if self.shape is None:
-            positive_number(self.alpha, "$.alpha", "alpha")
-            positive_number(self.beta, "$.beta", "beta")
+            for name, value in (("alpha", self.alpha), ("beta", self.beta)):
+                number = positive_number(value, f"$.{name}", name)
+                if not SMALLEST <= number <= LARGEST:
+                    problem = f"{name} is {value!r}"
+                    raise ScenarioError(f"$.{name}", problem, allowed=f"from {SMALLEST:g} to {LARGEST:g}")
 
     def on(self, axis: Axis) -> Density:
         """Place it on a parameter's axis."""
@@ -76,6 +82,11 @@ class BetaDensity(Density):
         inner = np.clip(u, EDGE, 1 - EDGE)
         log_norm = float(betaln(self.alpha, self.beta))
         return (self.alpha - 1) * np.log(inner) + (self.beta - 1) * np.log1p(-inner) - log_norm
+
+    def log_gradient(self, u: FloatArray) -> FloatArray:
+        """Return the derivative of the log density, shape (n,)."""
+        inner = np.clip(u, EDGE, 1 - EDGE)
+        return (self.alpha - 1) / inner - (self.beta - 1) / (1 - inner)
 
     def cdf(self, u: FloatArray) -> FloatArray:
         """Return the probability of [0, u], shape (n,)."""

@@ -98,8 +98,20 @@ class MixtureDensity:
 
     def log_density(self, U: FloatArray) -> FloatArray:
         """Return the log of the summed density at n points, shape (n, k), as shape (n,)."""
+        return np.logaddexp.reduce(self._log_terms(U), axis=0)
+
+    def _log_terms(self, U: FloatArray) -> FloatArray:
+        """Return the log of each component's part of the density, shape (components, n)."""
         logs = [sum(f.log_density(U[:, j]) for j, f in enumerate(c)) for c in self.components]
-        return np.logaddexp.reduce(np.log(self.weights)[:, None] + np.array(logs), axis=0)
+        return np.log(self.weights)[:, None] + np.array(logs)
+
+    def log_gradient(self, U: FloatArray) -> FloatArray:
+        """Return the gradient of the log density, shape (n, k): the components' own, by their part of the density."""
+        terms = self._log_terms(U)
+        parts = np.exp(terms - terms.max(axis=0))
+        parts /= parts.sum(axis=0)
+        own = [np.column_stack([f.log_gradient(U[:, j]) for j, f in enumerate(c)]) for c in self.components]
+        return np.einsum("cn,cnk->nk", parts, np.array(own))
 
     def mode(self) -> FloatArray:
         """Return the densest of the components' modes, shape (k,)."""
@@ -120,6 +132,10 @@ class MarginalMixture(Density):
     def log_density(self, u: FloatArray) -> FloatArray:
         """Return the log density, shape (n,)."""
         return self.mixture.log_density(u[:, None])
+
+    def log_gradient(self, u: FloatArray) -> FloatArray:
+        """Return the derivative of the log density, shape (n,)."""
+        return self.mixture.log_gradient(u[:, None])[:, 0]
 
     def cdf(self, u: FloatArray) -> FloatArray:
         """Return the probability of [0, u], shape (n,)."""

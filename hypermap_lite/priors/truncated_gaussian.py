@@ -93,6 +93,10 @@ class TruncatedNormal(Density):
         z = (u - self.location) / self.scale
         return -0.5 * z * z - LOG_SQRT_2PI - math.log(self.scale) - self._log_mass
 
+    def log_gradient(self, u: FloatArray) -> FloatArray:
+        """Return the derivative of the log density, shape (n,)."""
+        return -(u - self.location) / self.scale**2
+
     def cdf(self, u: FloatArray) -> FloatArray:
         """Return the probability of [0, u], shape (n,)."""
         low, high, sign = self._tail()

@@ -26,6 +26,10 @@ class UniformPrior(Density):
         """Return zeros, shape (n,)."""
         return np.zeros(len(u))
 
+    def log_gradient(self, u: FloatArray) -> FloatArray:
+        """Return zeros, shape (n,)."""
+        return np.zeros(len(u))
+
     def cdf(self, u: FloatArray) -> FloatArray:
         """Return u itself."""
         return u

@@ -12,6 +12,9 @@ from hypermap_lite.objectives import Objective
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.typing import FloatArray, Rng
 
+SMALLEST_EXTENT = 1e-3
+"""Smallest range of the front that counts as a trade-off, as a share of the range of all evaluations."""
+
 
 class Scalarization(Protocol):
     """A monotone function of m normalized objectives, all to be minimized."""
@@ -44,7 +47,8 @@ class Normalization:
 
         With a reference point only the part of the front that dominates it counts, as long as there is one: what is
         worse than the reference point in some objective is of no interest, however good it is in the others.
-        Where the front has no extent in an objective, all rows are taken; where those have none, scale 1.
+        Where that part has (next to) no extent in an objective, all rows are taken, so that numerical dust is no
+        trade-off; where those have none, scale 1.
         """
         front = Y[non_dominated(Y)]
         if reference_point is not None and (inside := (front < reference_point).all(axis=1)).any():
@@ -52,7 +56,7 @@ class Normalization:
         offset = front.min(axis=0)
         scale = front.max(axis=0) - offset
         overall = Y.max(axis=0) - Y.min(axis=0)
-        scale = np.where(scale > 1e-12 * overall, scale, overall)
+        scale = np.where(scale > SMALLEST_EXTENT * overall, scale, overall)
         return cls(offset=offset, scale=np.where(scale > 0, scale, 1.0))
 
     def __call__(self, Y: FloatArray) -> FloatArray:

@@ -49,7 +49,7 @@ class BoundingBox:
 
     def __post_init__(self) -> None:
         for name, box in self.limits.items():
-            if len(box) != 2 or not box[0] <= box[1]:
+            if len(box) != 2 or not box[0] <= box[1] or not np.isfinite(box[1] - box[0]):
                 raise ScenarioError(
                     f"$.limits.{name}", f"the box is {list(box)}", allowed="[low, high] with low <= high"
                 )

@@ -12,6 +12,9 @@ from hypermap_lite.space.parameter import Parameter
 from hypermap_lite.space.real import check_bounds
 from hypermap_lite.typing import FloatArray, IntArray, Value
 
+LARGEST = 2**51
+"""Largest size of a bound: all numbers between two such bounds, and halfway between them, are exact floats."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntegerParameter(Parameter):
@@ -30,7 +33,10 @@ class IntegerParameter(Parameter):
 
     def __post_init__(self) -> None:
         for i, bound in enumerate((self.low, self.high)):
-            if not finite_number(bound, f"$.values[{i}]", "the bound").is_integer():
+            number = finite_number(bound, f"$.values[{i}]", "the bound")
+            if abs(number) > LARGEST:
+                raise ScenarioError(f"$.values[{i}]", f"the bound {bound} is too large", allowed="up to 2^51 in size")
+            if not number.is_integer():
                 raise ScenarioError(f"$.values[{i}]", f"the bound {bound} is not whole", allowed="an integer")
         check_bounds(self.name, self.low, self.high, log=self.log)
         object.__setattr__(self, "low", int(self.low))
@@ -67,24 +73,21 @@ class IntegerParameter(Parameter):
         """Return the integers whose bins hold the n codes."""
         return [self.low + int(i) for i in self.level_index(codes)]
 
-    def snap(self, codes: FloatArray) -> FloatArray:
-        """Move codes in [0, 1] to those of the integers whose bins hold them."""
-        return self._codes_of(self.low + self.level_index(codes).astype(float))
-
     def level_index(self, codes: FloatArray) -> IntArray:
         """Return which integer each code decodes to, counted from 0, shape (n,)."""
         position = self._start + np.asarray(codes) * self._span
         values = np.floor((10.0**position if self.log else position) + 0.5)
         return np.clip(values - self.low, 0, self.high - self.low).astype(np.int64)
 
-    def level_codes(self) -> FloatArray:
-        """Return the codes of all integers in order, shape (n_levels,)."""
-        return self._codes_of(np.arange(self.low, self.high + 1, dtype=float))
+    def codes_of_levels(self, levels: IntArray) -> FloatArray:
+        """Return the codes of some integers, counted from `low`, shape (n,)."""
+        return self._codes_of(self.low + np.asarray(levels, dtype=float))
 
-    def bin_edges(self) -> FloatArray:
-        """Return the edges of the bins, shape (n_levels + 1,)."""
-        inner = self._codes_of(np.arange(self.low, self.high, dtype=float) + 0.5)
-        return np.concatenate([[0.0], inner, [1.0]])
+    def bins_of_levels(self, levels: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return lower and upper edges of the bins of some integers, counted from `low`, both shape (n,)."""
+        values = self.low + np.asarray(levels, dtype=float)
+        low, high = self._codes_of(values - 0.5), self._codes_of(values + 0.5)
+        return np.where(values == self.low, 0.0, low), np.where(values == self.high, 1.0, high)
 
     def locate(self, value: float) -> float:
         """Return where a number lies on the unit axis; below a log axis for numbers <= 0 is an error."""

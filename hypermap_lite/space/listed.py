@@ -10,7 +10,7 @@ import numpy as np
 
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.space.parameter import Parameter
-from hypermap_lite.typing import FloatArray, Value
+from hypermap_lite.typing import FloatArray, IntArray, Value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,13 +40,13 @@ class ListedParameter(Parameter):
         """Return the levels whose bins hold the n codes."""
         return [self.levels[i] for i in self.level_index(codes)]
 
-    def level_codes(self) -> FloatArray:
-        """Return the middles of the bins, shape (n_levels,)."""
-        return (np.arange(len(self.levels)) + 0.5) / len(self.levels)
+    def codes_of_levels(self, levels: IntArray) -> FloatArray:
+        """Return the middles of the bins of some levels, shape (n,)."""
+        return (np.asarray(levels) + 0.5) / len(self.levels)
 
-    def bin_edges(self) -> FloatArray:
-        """Return the edges of the bins, shape (n_levels + 1,)."""
-        return np.arange(len(self.levels) + 1) / len(self.levels)
+    def bins_of_levels(self, levels: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return lower and upper edges of the bins of some levels, both shape (n,)."""
+        return np.asarray(levels) / len(self.levels), (np.asarray(levels) + 1) / len(self.levels)
 
 
 def check_levels(name: str, values: Sequence[object]) -> None:

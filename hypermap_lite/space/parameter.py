@@ -50,19 +50,27 @@ class Parameter(ABC):
     def decode(self, codes: FloatArray) -> list[Value]:
         """Return the native values of n codes in [0, 1]."""
 
-    @abstractmethod
     def level_codes(self) -> FloatArray:
         """Return the codes of all levels in order, shape (n_levels,); an error if continuous."""
+        return self.codes_of_levels(np.arange(self.n_levels or 0))
 
-    @abstractmethod
     def bin_edges(self) -> FloatArray:
         """Return the edges of the bins, shape (n_levels + 1,), from 0 to 1; an error if continuous."""
+        return np.append(self.bins_of_levels(np.arange(self.n_levels or 0))[0], 1.0)
+
+    @abstractmethod
+    def codes_of_levels(self, levels: IntArray) -> FloatArray:
+        """Return the codes of some levels, counted from 0, without listing all; an error if continuous."""
+
+    @abstractmethod
+    def bins_of_levels(self, levels: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return lower and upper edges of the bins of some levels, without listing all; an error if continuous."""
 
     def snap(self, codes: FloatArray) -> FloatArray:
         """Move codes in [0, 1] to the nearest legal ones: those of their level, or themselves if continuous."""
         if self.n_levels is None:
             return codes
-        return self.level_codes()[self.level_index(codes)]
+        return self.codes_of_levels(self.level_index(codes))
 
     def level_index(self, codes: FloatArray) -> IntArray:
         """Return which level each code decodes to, counted from 0, shape (n,)."""

@@ -10,10 +10,14 @@ import numpy as np
 
 from hypermap_lite.errors import ScenarioError, finite_number
 from hypermap_lite.space.parameter import Parameter
-from hypermap_lite.typing import FloatArray, Value
+from hypermap_lite.typing import FloatArray, IntArray, Value
 
-SIGNIFICANT_DIGITS = 13
+SIGNIFICANT_DIGITS = 12
 """Decimal digits kept of the range; what is decoded lies on this grid, so it encodes and decodes exactly."""
+
+
+CODE_DECIMALS = 14
+"""Decimals kept of a code, so that the same point in metres and in millimetres has the same code."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,7 +55,7 @@ class RealParameter(Parameter):
         """Return the codes of n native values, shape (n,)."""
         numbers = np.asarray(values, dtype=float)
         axis = np.log10(numbers) if self.log else numbers
-        return np.clip((axis - self._start) / self._span, 0.0, 1.0)
+        return np.round(np.clip((axis - self._start) / self._span, 0.0, 1.0), CODE_DECIMALS)
 
     def decode(self, codes: FloatArray) -> list[Value]:
         """Return the native values of n codes, rounded to a decimal grid far finer than any use."""
@@ -63,11 +67,11 @@ class RealParameter(Parameter):
         digits = SIGNIFICANT_DIGITS - math.ceil(math.log10(magnitude))
         return min(max(round(value, digits), self.low), self.high)
 
-    def level_codes(self) -> FloatArray:
+    def codes_of_levels(self, levels: IntArray) -> FloatArray:
         """Raise: a real parameter has no levels."""
         raise TypeError(f"'{self.name}' is continuous and has no levels")
 
-    def bin_edges(self) -> FloatArray:
+    def bins_of_levels(self, levels: IntArray) -> tuple[FloatArray, FloatArray]:
         """Raise: a real parameter has no bins."""
         raise TypeError(f"'{self.name}' is continuous and has no bins")
 

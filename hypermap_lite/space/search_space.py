@@ -13,7 +13,7 @@ from hypermap_lite.space.parameter import Parameter
 from hypermap_lite.typing import BoolArray, Configuration, FloatArray
 
 KEY_DECIMALS = 10
-"""Codes that agree to this many decimals are the same point."""
+"""Codes of a real parameter that agree to this many decimals are the same value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,11 @@ class SearchSpace:
 
     def keys(self, X: FloatArray) -> list[bytes]:
         """Return a hashable name of each of n points, equal for points that are the same configuration."""
-        return [row.tobytes() for row in np.round(X, KEY_DECIMALS) + 0.0]
+        names = np.round(X, KEY_DECIMALS) + 0.0  # no negative zeros
+        for j, parameter in enumerate(self.parameters):
+            if parameter.n_levels is not None:
+                names[:, j] = parameter.level_index(X[:, j])
+        return [row.tobytes() for row in names]
 
     def unseen(self, X: FloatArray, seen: Iterable[bytes]) -> BoolArray:
         """Tell which of n points are neither among the seen keys nor a repeat of an earlier row, shape (n,)."""

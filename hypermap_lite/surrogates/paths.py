@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -40,6 +40,8 @@ class Features:
     seed: int
     """Source of the factors of the categorical axes."""
 
+    _draws: dict[tuple[int, int], FloatArray] = field(default_factory=dict, init=False, repr=False, compare=False)
+
     @classmethod
     def draw(cls, process: Process, n_features: int, rng: Rng) -> Features:
         """Draw features for a process' kernel."""
@@ -66,11 +68,17 @@ class Features:
 
     def _level_factors(self, axis: int, correlation: float, codes: FloatArray) -> FloatArray:
         """Return the factor of every feature at n codes of a categorical axis, shape (n, f)."""
-        n_features = len(self.amplitudes)
-        common = np.random.default_rng([self.seed, axis]).standard_normal(n_features)
+        common = math.sqrt(correlation) * self._draw_once(axis, 0)
         levels, index = np.unique(codes, return_inverse=True)
-        own = [np.random.default_rng([self.seed, axis, 1 + int(u * 2**40)]).standard_normal(n_features) for u in levels]
-        return math.sqrt(correlation) * common + math.sqrt(1 - correlation) * np.array(own)[index]
+        own = np.array([self._draw_once(axis, 1 + int(u * 2**40)) for u in levels])
+        return common + math.sqrt(1 - correlation) * own[index]
+
+    def _draw_once(self, axis: int, number: int) -> FloatArray:
+        """Return one standard normal draw per feature, the same for the same numbers, shape (f,)."""
+        if (axis, number) not in self._draws:
+            rng = np.random.default_rng([self.seed, axis, number])
+            self._draws[axis, number] = rng.standard_normal(len(self.amplitudes))
+        return self._draws[axis, number]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,12 @@ from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, constant_mean, inverse_from_cholesky
 from hypermap_lite.typing import BoolArray, FloatArray
 
+NEXT_TO_ZERO = 1e-150
+"""Outputs below this size are zero: their squares vanish."""
+
+CONSTANT = 1e-12
+"""Outputs whose relative standard deviation is below this are constant."""
+
 STD_FLOOR = 1e-9
 """Smallest predicted standard deviation, in units of the standardized outputs."""
 
@@ -28,13 +34,15 @@ class Standardized:
 
     @classmethod
     def of(cls, y: FloatArray) -> Standardized:
-        """Standardize n outputs; constant ones keep scale 1, and huge ones do not overflow."""
-        magnitude = max(float(np.abs(y).max()), 1e-300)
+        """Standardize n outputs, at most 1e150 in size; constant ones, and next to zero ones, keep scale 1."""
+        magnitude = float(np.abs(y).max())
+        if magnitude < NEXT_TO_ZERO:
+            return cls(np.zeros(len(y)), 0.0, 1.0)
         small = y / magnitude
-        spread = float(small.std())
-        scale = spread if spread > 1e-12 else 1.0 / magnitude if 1.0 / magnitude < 1e12 else 1.0
-        offset = float(small.mean())
-        return cls((small - offset) / scale, offset * magnitude, scale * magnitude)
+        offset, spread = float(small.mean()), float(small.std())
+        if spread < CONSTANT:
+            return cls(np.zeros(len(y)), offset * magnitude, 1.0)
+        return cls((small - offset) / spread, offset * magnitude, spread * magnitude)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
     from sklearn.ensemble import RandomForestRegressor
 
 VARIANCE_FLOOR = 1e-8
-"""Smallest variance of a leaf, relative to the variance of the outputs."""
+"""Smallest variance of a leaf, in units of the squared largest difference of outputs."""
+
+SMALLEST_SPREAD = 1e-150
+"""Outputs that differ by less are constant: their squares vanish."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +59,8 @@ class RandomForest:
 
         forests = []
         for k, y in enumerate(Y.T):
-            offset, magnitude = float(y[0]), max(float(np.abs(y - y[0]).max()), 1e-300)
+            offset, spread = float(y[0]), float(np.abs(y - y[0]).max())
+            magnitude = spread if spread > SMALLEST_SPREAD else 1.0
             regressor = RandomForestRegressor(
                 n_estimators=self.number_of_trees,
                 max_features=self.max_features,
@@ -65,7 +69,7 @@ class RandomForest:
                 random_state=(seed + k) % 2**31,
             )
             scaled = (y - offset) / magnitude
-            forests.append(Forest.of(regressor.fit(X, scaled), offset, magnitude, float(scaled.var())))
+            forests.append(Forest.of(regressor.fit(X, scaled), offset, magnitude))
         return tuple(forests)
 
 
@@ -80,12 +84,11 @@ class Forest:
     scale: float
 
     @classmethod
-    def of(cls, regressor: RandomForestRegressor, offset: float, scale: float, variance: float) -> Forest:
-        """Read the leaves of a fitted regressor whose outputs have the given variance."""
-        floor = VARIANCE_FLOOR * variance + 1e-300
+    def of(cls, regressor: RandomForestRegressor, offset: float, scale: float) -> Forest:
+        """Read the leaves of a fitted regressor."""
         trees = [estimator.tree_ for estimator in regressor.estimators_]
         means = [tree.value[:, 0, 0] for tree in trees]
-        variances = [np.maximum(tree.impurity, floor) for tree in trees]
+        variances = [np.maximum(tree.impurity, VARIANCE_FLOOR) for tree in trees]
         return cls(regressor, means, variances, offset, scale)
 
     def per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:

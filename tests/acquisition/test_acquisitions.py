@@ -69,10 +69,13 @@ def test_gradients_agree_with_finite_differences(name: str, scalarization: str, 
 
 
 @pytest.mark.parametrize("name", [n for n in ACQUISITIONS if n != "thompson_sampling"])
-def test_a_pending_point_is_less_worth_trying_again(name: str) -> None:
-    candidate = Z[:1]
-    free = ACQUISITIONS[name]().scorer(context(Y=Y[:, :1]))
-    taken = ACQUISITIONS[name]().scorer(context(Y=Y[:, :1], pending=candidate))
+@pytest.mark.parametrize("scalarization", list(SCALARIZATIONS))
+@pytest.mark.parametrize("n_objectives", [1, 2])
+def test_a_pending_point_is_less_worth_trying_again(name: str, scalarization: str, n_objectives: int) -> None:
+    values = Y[:, :n_objectives]
+    free = ACQUISITIONS[name]().scorer(context(scalarization=scalarization, Y=values))
+    candidate = Z[[np.argmax(free(Z))]]
+    taken = ACQUISITIONS[name]().scorer(context(scalarization=scalarization, Y=values, pending=candidate))
     assert taken(candidate)[0] < free(candidate)[0]
 
 

@@ -6,8 +6,8 @@ import pytest
 from hypermap_lite.acquisition import PriorWeighted, PriorWeighting
 from hypermap_lite.acquisition.improvement import LinearImprovement
 from hypermap_lite.errors import ScenarioError
-from hypermap_lite.priors import AsJoint, GaussianPrior, ProductPrior
-from hypermap_lite.space import RealParameter
+from hypermap_lite.priors import AsJoint, BetaPrior, GaussianPrior, ProductPrior, WeightsPrior
+from hypermap_lite.space import CategoricalParameter, RealParameter
 from tests.acquisition.toy_field import toy_field
 
 X = np.random.default_rng(0).random((6, 2))
@@ -54,6 +54,23 @@ def test_gradient_agrees_with_finite_differences() -> None:
     assert score == pytest.approx(scorer(X))
     for j, e in enumerate(1e-6 * np.eye(2)):
         assert gradient[:, j] == pytest.approx((scorer(X + e) - scorer(X - e)) / 2e-6, rel=1e-4, abs=1e-5)
+
+
+def test_an_unbounded_density_counts_no_more_than_its_peak() -> None:
+    axis = RealParameter(name="x", low=0, high=1)
+    decay = ProductPrior(2, (((0,), AsJoint(BetaPrior(shape="decay").on(axis))),))
+    scorer = PriorWeighted(inner=inner(), prior=decay, weight=4.8, floor=0.05)
+    at_bound, near = scorer.log_relative_density(np.array([[0.0, 0.5], [0.005, 0.5]]))
+    assert (at_bound, near) == pytest.approx((0.0, 0.0))
+
+
+def test_without_floor_gradients_are_finite_where_the_prior_forbids() -> None:
+    axis = CategoricalParameter(name="c", values=("a", "b"))
+    forbids = ProductPrior(2, (((0,), AsJoint(WeightsPrior(weights=[0, 1]).on(axis))),))
+    scorer = PriorWeighted(inner=inner(), prior=forbids, weight=1.0, floor=0.0)
+    score, gradient = scorer.with_gradient(np.array([[0.25, 0.5], [0.75, 0.5]]))
+    assert score[0] == -np.inf
+    assert np.isfinite(gradient).all()
 
 
 def test_the_default_strength_is_a_tenth_of_the_model_based_budget() -> None:

@@ -65,6 +65,14 @@ def test_a_grid_is_full_and_includes_the_bounds() -> None:
     assert {tuple(x) for x in X} == {(a, b) for a in (0, 0.5, 1) for b in (0, 0.5, 1)}
 
 
+def test_a_grid_over_a_huge_log_range_is_spread_by_decades() -> None:
+    space = SearchSpace((IntegerParameter(name="n", low=1, high=10**8, log=True),))
+    values = sorted(c["n"] for c in space.decode(points("grid", space, 3)))
+    assert values[0] == 1
+    assert 5_000 < values[1] < 20_000
+    assert values[2] == 10**8
+
+
 def test_prior_sampling_draws_from_the_prior() -> None:
     space = SearchSpace((RealParameter(name="a", low=0, high=10),))
     prior = ProductPrior(1, (((0,), AsJoint(GaussianPrior(mean=7, std=0.1).on(space.parameters[0]))),))

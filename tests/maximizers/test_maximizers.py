@@ -130,10 +130,11 @@ def test_a_narrow_peak_under_the_prior_is_found(name: str) -> None:
 
 
 @every_maximizer
-def test_scores_that_are_not_finite_are_survived(name: str) -> None:
+@pytest.mark.parametrize("value", [-np.inf, np.nan])
+def test_scores_that_are_not_finite_are_survived(name: str, value: float) -> None:
     class Broken(Bowl):
         def __call__(self, X: np.ndarray) -> np.ndarray:
-            return np.where(X[:, 0] > 0.5, -np.inf, super().__call__(X))
+            return np.where(X[:, 0] > 0.5, value, super().__call__(X))
 
     found = MAXIMIZERS[name]().maximize(problem(REAL, Broken(np.array([0.9, 0.5, 0.5]))))
     assert found is not None

@@ -1,16 +1,20 @@
 """Bayesian optimization."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hypermap_lite.acquisition import ACQUISITIONS
+from hypermap_lite.assembly import build_optimizer
 from hypermap_lite.design import DESIGNS
 from hypermap_lite.maximizers import MAXIMIZERS
 from hypermap_lite.optimizers.bayesian import milestones
 from hypermap_lite.pareto.hypervolume import hypervolume
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS
+from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.surrogates import SURROGATES
-from tests.optimizers.runs import configurations, run, scenario_of
+from tests.optimizers.runs import configurations, evaluate, fail, resumed, run, scenario_of
 
 GAUSSIANS = {
     "a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.5, "std": 0.2}},
@@ -44,6 +48,68 @@ def test_every_member_of_every_family_drives_a_run(changes: dict) -> None:
 
 def test_weight_samplings_are_covered_above() -> None:
     assert set(WEIGHTS) == {"dirichlet", "bounding_box"}
+
+
+MIXED = {
+    "a": GAUSSIANS["a"],
+    "n": {"parameter_type": "integer", "values": [1, 1000], "scale": "log"},
+    "c": {
+        "parameter_type": "categorical",
+        "values": ["x", "y", "z"],
+        "prior": {"type": "weights", "weights": [1, 2, 3]},
+    },
+}
+
+
+def mixed_objectives(c: dict) -> dict[str, float]:
+    return {"near": (c["a"] - 0.3) ** 2 + ("xyz".index(c["c"])) / 3, "far": -abs(np.log10(c["n"]) - 1) - c["a"]}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        pytest.param({}, id="default"),
+        pytest.param({"surrogate": "random_forest"}, id="random_forest"),
+        pytest.param({"acquisition": "thompson_sampling"}, id="thompson_sampling"),
+        pytest.param({"preset": "paper"}, id="paper"),
+    ],
+)
+def test_a_resumed_run_with_priors_and_failures_goes_on_past_several_milestones(changes: dict) -> None:
+    scenario = scenario_of(input_parameters=MIXED, budget={"evaluations": 22}, **changes)
+    whole = build_optimizer(load_scenario(scenario))
+    while len(whole.history) < 20:
+        suggestions = whole.ask(2)
+        whole.tell([fail(s) if s.trial % 5 == 3 else evaluate(s, mixed_objectives) for s in suggestions])
+    again = resumed(scenario, list(whole.history))
+    expected, found = whole.ask(2), again.ask(2)
+    assert [replace(s, seconds=0) for s in found] == [replace(s, seconds=0) for s in expected]
+    assert found[0].prior_weight is not None
+
+
+@pytest.mark.parametrize("value", [0.0, 5.0, -3e200])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"preset": "paper"},
+        {"acquisition": "noisy_expected_improvement"},
+        {"acquisition": {"type": "expected_improvement", "scalarization": "linear"}},
+        {"acquisition": "upper_confidence_bound"},
+        {"acquisition": "thompson_sampling"},
+        {"surrogate": "random_forest"},
+        {"surrogate": "random_forest", "acquisition": {"scalarization": "linear"}},
+    ],
+    ids=str,
+)
+def test_objectives_that_never_change_are_no_trouble(changes: dict, value: float) -> None:
+    optimizer = run(scenario_of(**changes), 8, function=lambda c: {"near": value, "far": value})
+    assert all(np.isfinite(e.suggestion.acquisition_value) for e in list(optimizer.history)[5:])
+
+
+def test_thirty_parameters_are_no_trouble() -> None:
+    parameters = {f"x{i}": {"parameter_type": "real", "values": [0, 1]} for i in range(30)}
+    scenario = scenario_of(input_parameters=parameters, objectives=[{"name": "y"}])
+    optimizer = run(scenario, 8, function=lambda c: {"y": sum((v - 0.5) ** 2 for v in c.values())})
+    assert len(optimizer.history) == 8
 
 
 @pytest.mark.parametrize("n_objectives", [1, 2])
@@ -95,6 +161,18 @@ def test_it_spreads_along_a_front_better_than_random_search() -> None:
         return hypervolume(Y, np.array([1.0, 1.0]))
 
     assert volume("bayesian") > volume("random_search") + 0.02
+
+
+def test_a_front_flat_but_for_numerical_dust_does_not_blind_the_search() -> None:
+    def with_penalty(c: dict) -> dict[str, float]:
+        far = -((c["a"] - 0.8) ** 2) - (c["b"] / 5 - 0.5) ** 2
+        return {"near": 10 * (c["b"] < -2.5) + 1e-9 * np.sin(40 * c["a"] + 3.4 * c["b"]), "far": far}
+
+    finals = []
+    for seed in range(3):
+        optimizer = run(scenario_of(seed=seed, budget={"evaluations": 20}), 20, function=with_penalty)
+        finals.append(max(e.values["far"] for e in optimizer.history))
+    assert np.median(finals) > -0.01
 
 
 def test_milestones_depend_on_nothing_but_the_count() -> None:

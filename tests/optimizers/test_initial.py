@@ -1,6 +1,6 @@
 """The trials before there is a model."""
 
-from hypermap_lite.design import RandomSampling, Sobol
+from hypermap_lite.design import Grid, RandomSampling, Sobol
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.priors import ProductPrior
 from hypermap_lite.space import IntegerParameter, RealParameter, SearchSpace
@@ -26,6 +26,14 @@ def test_there_may_be_no_design() -> None:
     assert len(InitialPhase(bare, ProductPrior(1), Sobol(), 0, seed=0)) == 0
 
 
-def test_a_longer_design_of_the_same_seed_is_another_function_of_the_scenario_alone() -> None:
+def test_a_default_leaves_the_design_whole() -> None:
+    square = SearchSpace(tuple(RealParameter(name=n, low=0, high=1, default=0.3) for n in "ab"))
+    phase = InitialPhase(square, ProductPrior(2), Grid(), 10, seed=0)
+    assert [phase.suggestion(0).phase, len(phase)] == ["default", 10]
+    others = {tuple(phase.suggestion(i).configuration.values()) for i in range(1, 10)}
+    assert others == {(a, b) for a in (0.0, 0.5, 1.0) for b in (0.0, 0.5, 1.0)}
+
+
+def test_the_same_seed_gives_the_same_first_trials() -> None:
     a, b = (InitialPhase(LINE, ProductPrior(1), Sobol(), 6, seed=7) for _ in range(2))
     assert [a.suggestion(i) for i in range(6)] == [b.suggestion(i) for i in range(6)]

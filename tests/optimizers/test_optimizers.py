@@ -4,6 +4,7 @@ import pytest
 
 from hypermap_lite.assembly import build_optimizer
 from hypermap_lite.errors import UsageError
+from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.optimizers import OPTIMIZERS
 from hypermap_lite.scenario.loader import load_scenario
 from tests.optimizers.runs import configurations, evaluate, fail, resumed, run, scenario_of
@@ -65,6 +66,15 @@ def test_a_finite_space_ends_gracefully(kind: str) -> None:
 
 
 @every_optimizer
+def test_a_narrow_prior_does_not_exhaust_a_large_space(kind: str) -> None:
+    narrow = {"type": "gaussian", "mean": 5, "std": 0.3}
+    parameters = {"n": {"parameter_type": "integer", "values": [0, 1_000_000], "prior": narrow}}
+    scenario = scenario_of(optimizer=kind, input_parameters=parameters)
+    optimizer = run(scenario, 12, function=lambda c: {"near": abs(c["n"] - 7), "far": -abs(c["n"] - 3)})
+    assert len({c["n"] for c in configurations(optimizer)}) == 12
+
+
+@every_optimizer
 def test_a_complete_default_comes_first(kind: str) -> None:
     parameters = {
         "a": {"parameter_type": "real", "values": [0, 1], "parameter_default": 0.25},
@@ -90,7 +100,8 @@ def test_evaluations_told_out_of_order_wait_for_the_earlier_ones(kind: str) -> N
     optimizer = resumed(scenario, list(run(scenario, 6).history))
     first, second, third = optimizer.ask(3)
     optimizer.tell([evaluate(third)])
-    assert [s.trial for s in optimizer.pending] == [6, 7, 8]
+    assert [s.trial for s in optimizer.pending] == [6, 7]
+    assert [s.trial for s in optimizer.in_flight] == [6, 7, 8]
     assert len(optimizer.history) == 6
     optimizer.tell([evaluate(first), evaluate(second)])
     assert len(optimizer.history) == 9
@@ -104,6 +115,45 @@ def test_telling_what_was_not_asked_names_what_is_pending(kind: str) -> None:
     optimizer.tell([evaluate(suggestion)])
     with pytest.raises(UsageError, match=r"trial 0 is not pending \(pending: none; call ask\(\) first\)"):
         optimizer.tell([evaluate(suggestion)])
+
+
+@every_optimizer
+def test_a_list_with_a_mistake_tells_nothing(kind: str) -> None:
+    optimizer = build_optimizer(load_scenario(scenario_of(optimizer=kind)))
+    good = evaluate(optimizer.ask()[0])
+    bad = evaluate(Suggestion(trial=9, configuration=good.configuration, phase="design"))
+    for mistake in ([good, bad], [good, good]):
+        with pytest.raises(UsageError, match=r"trial 9 is not pending|trial 0 is told twice"):
+            optimizer.tell(mistake)
+        assert [s.trial for s in optimizer.pending] == [0]
+    optimizer.tell([good])
+    assert len(optimizer.history) == 1
+
+
+@every_optimizer
+def test_only_pending_suggestions_can_be_adopted(kind: str) -> None:
+    optimizer = build_optimizer(load_scenario(scenario_of(optimizer=kind)))
+    (suggestion,) = optimizer.ask()
+    optimizer.adopt(suggestion)
+    optimizer.tell([evaluate(suggestion)])
+    with pytest.raises(UsageError, match="adopt: trial 0 is not pending"):
+        optimizer.adopt(suggestion)
+
+
+def test_an_ask_that_is_interrupted_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    optimizer = build_optimizer(load_scenario(scenario_of(optimizer="random_search")))
+    suggest = optimizer._suggest
+
+    def interrupted(trial: int) -> Suggestion | None:
+        if trial == 2:
+            raise KeyboardInterrupt
+        return suggest(trial)
+
+    monkeypatch.setattr(optimizer, "_suggest", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        optimizer.ask(3)
+    assert optimizer.pending == []
+    assert optimizer.ask(2)[0].trial == 0
 
 
 @every_optimizer

@@ -44,6 +44,7 @@ def test_mode(alpha: float, beta: float, mode: float) -> None:
         ({"shape": "gausian"}, "Did you mean 'gaussian'"),
         ({"alpha": 1}, "beta is None"),
         ({"alpha": 0, "beta": 1}, "alpha is 0"),
+        ({"alpha": 1, "beta": 0.05}, "beta is 0.05"),
     ],
 )
 def test_impossible_options_are_refused(options: dict, message: str) -> None:

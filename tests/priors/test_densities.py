@@ -86,6 +86,15 @@ def test_cdf_is_the_integral_of_the_density(prior: object, parameter: Parameter)
 
 
 @pytest.mark.parametrize(("prior", "parameter"), CASES)
+def test_log_gradient_agrees_with_finite_differences_within_bins(prior: object, parameter: Parameter) -> None:
+    density = prior.on(parameter)
+    u = np.array([0.0501, 0.313, 0.61, 0.93])
+    with np.errstate(invalid="ignore"):  # a level without weight is -inf on both sides
+        numeric = (density.log_density(u + 1e-7) - density.log_density(u - 1e-7)) / 2e-7
+    assert density.log_gradient(u) == pytest.approx(np.nan_to_num(numeric), rel=1e-4, abs=1e-4)
+
+
+@pytest.mark.parametrize(("prior", "parameter"), CASES)
 def test_mode_is_as_dense_as_any_sample(prior: object, parameter: Parameter) -> None:
     density = prior.on(parameter)
     peak = density.log_density(np.array([density.mode()]))[0]
@@ -98,6 +107,18 @@ def test_mode_is_as_dense_as_any_sample(prior: object, parameter: Parameter) -> 
 def test_samples_lie_in_the_unit_interval(prior: object, parameter: Parameter) -> None:
     u = prior.on(parameter).sample(1000, np.random.default_rng(0))
     assert np.all((u >= 0) & (u <= 1))
+
+
+@pytest.mark.parametrize("log", [False, True])
+def test_an_axis_of_many_levels_scores_what_it_samples(log: bool) -> None:
+    parameter = IntegerParameter(name="x", low=1, high=10**6, log=log)
+    density = (GaussianPrior(mean=1.4, std=0.01) if log else GaussianPrior(mean=500_000, std=0.4)).on(parameter)
+    levels, counts = np.unique(parameter.decode(density.sample(5000, np.random.default_rng(0))), return_counts=True)
+    codes = parameter.encode(list(levels))
+    low, high = parameter.bins_of_levels(levels - 1)
+    masses = np.exp(density.log_density(codes)) * (high - low)
+    assert masses == pytest.approx(counts / 5000, abs=0.03)
+    assert parameter.decode(np.array([density.mode()]))[0] == levels[np.argmax(counts)]
 
 
 def test_units_play_no_part() -> None:

@@ -69,6 +69,11 @@ def test_normalization_of_a_single_best_point_takes_the_range_of_all() -> None:
     assert Normalization.of_front(np.ones((3, 2))).scale.tolist() == [1, 1]
 
 
+def test_numerical_dust_on_a_front_is_no_trade_off() -> None:
+    points = np.array([[1e-9, 0.0], [0.0, 1.0], [10.0, 5.0]])
+    assert Normalization.of_front(points).scale == pytest.approx([10.0, 1.0])
+
+
 def test_dirichlet_weights_are_on_the_simplex() -> None:
     weights = np.array([Dirichlet().sample(TWO, UNIT, np.random.default_rng(i)) for i in range(500)])
     assert weights.sum(axis=1) == pytest.approx(np.ones(500))

@@ -42,15 +42,22 @@ def test_integers_never_leave_their_bounds(parameter: IntegerParameter, u: float
     assert parameter.low <= value <= parameter.high
 
 
-@given(parameters())
-def test_level_codes_lie_inside_their_bins_which_fill_the_interval(parameter: Parameter) -> None:
+@given(parameters(), codes)
+def test_codes_of_levels_lie_inside_their_bins_which_hold_the_point(parameter: Parameter, u: np.ndarray) -> None:
     if parameter.n_levels is None:
         return
-    edges, level_codes = parameter.bin_edges(), parameter.level_codes()
+    levels = parameter.level_index(u)
+    low, high = parameter.bins_of_levels(levels)
+    level_codes = parameter.codes_of_levels(levels)
+    assert np.all((low < level_codes) & (level_codes < high))
+    assert np.all((low <= u + 1e-9) & (u <= high + 1e-9))
+
+
+def test_the_bins_fill_the_interval() -> None:
+    edges = IntegerParameter(name="n", low=1, high=64, log=True).bin_edges()
     assert edges[0] == 0
     assert edges[-1] == 1
-    assert np.all(edges[:-1] < level_codes)
-    assert np.all(level_codes < edges[1:])
+    assert np.all(np.diff(edges) > 0)
 
 
 def test_every_integer_of_a_linear_axis_is_equally_likely() -> None:
@@ -90,6 +97,7 @@ def test_illegal_values_are_not_contained(value: object) -> None:
         pytest.param("real", {"low": 0, "high": float("inf")}, "finite number", id="infinite"),
         pytest.param("real", {"low": 0, "high": 1, "log": True}, "not positive", id="log-from-zero"),
         pytest.param("real", {"low": -1e308, "high": 1e308}, "not finite", id="infinite-range"),
+        pytest.param("integer", {"low": 0, "high": 2**60}, "too large", id="beyond-exact-floats"),
         pytest.param("integer", {"low": 0, "high": 10**400}, "finite number", id="beyond-floats"),
         pytest.param("integer", {"low": 0.5, "high": 3}, "not whole", id="half"),
         pytest.param("ordinal", {"values": (1.0,)}, "no choice", id="single-level"),

@@ -61,3 +61,10 @@ def test_contains_wants_exactly_the_parameters() -> None:
     assert not SMALL.contains({"n": 1})
     assert not SMALL.contains({"n": 1, "c": "b", "d": 0})
     assert not SMALL.contains({"n": 4, "c": "b"})
+
+
+def test_neighbouring_integers_of_a_huge_range_are_different_points() -> None:
+    for log in (False, True):
+        space = SearchSpace((IntegerParameter(name="n", low=1, high=10**12, log=log),))
+        a, b = space.keys(space.encode([{"n": 999_999_999_998}, {"n": 999_999_999_999}]))
+        assert a != b

@@ -7,7 +7,9 @@ from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
 from hypermap_lite.surrogates import GaussianProcess
 from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior, quasi_normal
+from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters
+from hypermap_lite.surrogates.paths import Features
 from hypermap_lite.surrogates.process import Process, Standardized
 
 RNG = np.random.default_rng(0)
@@ -138,6 +140,27 @@ def test_difficult_data_give_finite_predictions(inputs: np.ndarray, outputs: np.
     assert np.isfinite(prediction.std).all()
     assert np.isfinite(posterior.fantasies(points[:1], 4, np.random.default_rng(0)).field(points).mean).all()
     assert np.isfinite(posterior.sample_path(np.random.default_rng(0), 16)(points).mean).all()
+
+
+def test_a_covariance_that_cannot_be_factorized_leaves_the_mean_of_the_data(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("process", "gaussian_process"):
+        monkeypatch.setattr(f"hypermap_lite.surrogates.{module}.safe_cholesky", lambda *arguments: None)
+    h = Hyperparameters(np.array([0.4, 0.9]), 1.3, 0.02)
+    process = Process.condition(X, Standardized.of(Y[:, 0]), h, ORDERED)
+    posterior = GaussianProcessPosterior(processes=(process,))
+    assert posterior.predict(Z).mean[:, 0] == pytest.approx(np.full(7, Y[:, 0].mean()), abs=1e-3)
+    assert posterior.predict(Z).std[:, 0] == pytest.approx(np.full(7, np.sqrt(1.3) * Y[:, 0].std()), rel=1e-3)
+    assert np.isfinite(posterior.fantasies(Z[:1], 4, np.random.default_rng(0)).field(Z).mean).all()
+
+
+def test_features_of_categories_average_to_the_kernel() -> None:
+    codes = np.array([0.25, 0.75])
+    points = np.column_stack([np.full(2, 0.3), codes])
+    kernel = MaternHammingKernel(np.array([0.5, 0.7]), np.array([True, False]))
+    h = Hyperparameters(np.array([0.5, 0.7]), 1.0, 0.01)
+    process = Process.condition(points[:1], Standardized.of(np.zeros(1)), h, kernel.is_ordered)
+    draws = np.array([Features.draw(process, 64, np.random.default_rng(i))(points)[0] for i in range(3000)])
+    assert draws.T @ draws / 3000 == pytest.approx(kernel(points, points), abs=0.06)
 
 
 def test_without_noise_the_prediction_goes_through_the_data() -> None:

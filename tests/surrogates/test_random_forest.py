@@ -62,6 +62,7 @@ def test_a_constant_objective_is_fine() -> None:
         X, np.full((40, 1), 7.0), is_ordered=ORDERED, rng=np.random.default_rng(0)
     )
     assert forest.predict(Z).mean[:, 0] == pytest.approx([7, 7])
+    assert np.all(forest.predict(Z).std > 0)
 
 
 @pytest.mark.parametrize(
