@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
 from hypermap_lite.acquisition.improvement import LinearImprovement, SampledImprovement
 from hypermap_lite.errors import ScenarioError
@@ -14,7 +16,7 @@ from hypermap_lite.surrogates.gaussian_process import quasi_normal
 class ExpectedImprovement:
     """Log expected improvement over the best value observed [1]_, noise and all.
 
-    Pending points count as evaluated at their predicted means. Several objectives are scalarized: per objective and
+    Pending points count as evaluated at their predicted means, as incumbents too. Several objectives are scalarized: per objective and
     summed for the linear scalarization, by joint samples otherwise.
 
     References
@@ -31,18 +33,21 @@ class ExpectedImprovement:
     def scorer(self, context: AcquisitionContext) -> Scorer:
         """Become the scorer of one suggestion."""
         posterior = context.posterior.believe(context.X_pending)
+        known = context.Y
+        if len(context.X_pending):
+            known = np.vstack([known, context.posterior.predict(context.X_pending).mean])
         if context.scalarization.is_linear or context.Y.shape[1] == 1:
             return LinearImprovement(
                 field=posterior.field,
-                incumbents=context.Y.min(axis=0)[None],
+                incumbents=known.min(axis=0)[None],
                 weights=context.weights,
                 scale=context.normalization.scale,
                 is_differentiable=posterior.is_differentiable,
             )
-        observed = context.scalarization(context.normalization(context.Y), context.weights)
+        scalars = context.scalarization(context.normalization(known), context.weights)
         return SampledImprovement(
             field=posterior.field,
-            incumbents=observed.min(keepdims=True),
+            incumbents=scalars.min(keepdims=True),
             normal=quasi_normal(self.samples, context.Y.shape[1], context.rng),
             scalarization=context.scalarization,
             weights=context.weights,

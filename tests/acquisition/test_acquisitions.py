@@ -74,7 +74,8 @@ def test_gradients_agree_with_finite_differences(name: str, scalarization: str, 
 def test_a_pending_point_is_less_worth_trying_again(name: str, scalarization: str, n_objectives: int) -> None:
     values = Y[:, :n_objectives]
     free = ACQUISITIONS[name]().scorer(context(scalarization=scalarization, Y=values))
-    candidate = Z[[np.argmax(free(Z))]]
+    many = np.random.default_rng(5).random((500, 2))
+    candidate = many[[np.argmax(free(many))]]
     taken = ACQUISITIONS[name]().scorer(context(scalarization=scalarization, Y=values, pending=candidate))
     assert taken(candidate)[0] < free(candidate)[0]
 

@@ -156,11 +156,11 @@ def test_a_strong_prior_pulls_the_suggestions() -> None:
 
 
 def test_it_spreads_along_a_front_better_than_random_search() -> None:
-    def volume(kind: str) -> float:
-        Y = run(scenario_of(optimizer=kind, budget={"evaluations": 25}), 25).history.Y()
-        return hypervolume(Y, np.array([1.0, 1.0]))
+    def volumes(kind: str) -> list[float]:
+        runs = [run(scenario_of(optimizer=kind, seed=seed, budget={"evaluations": 25}), 25) for seed in range(5)]
+        return [hypervolume(r.history.Y(), np.array([0.6, 0.6])) for r in runs]
 
-    assert volume("bayesian") > volume("random_search") + 0.02
+    assert np.median(volumes("bayesian")) > max(volumes("random_search"))
 
 
 def test_a_front_flat_but_for_numerical_dust_does_not_blind_the_search() -> None:
