@@ -16,8 +16,8 @@ from hypermap_lite.surrogates.gaussian_process import quasi_normal
 class ExpectedImprovement:
     """Log expected improvement over the best value observed [1]_, noise and all.
 
-    Pending points count as evaluated at their predicted means, as incumbents too. Several objectives are scalarized: per objective and
-    summed for the linear scalarization, by joint samples otherwise.
+    Pending points count as evaluated at their predicted means, as incumbents too. Several objectives are scalarized:
+    per objective and summed for the linear scalarization, by joint samples otherwise.
 
     References
     ----------
