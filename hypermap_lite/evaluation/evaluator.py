@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+import os
+import re
 import time
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Final, Protocol, TypeGuard
 
 from hypermap_lite.errors import EvaluationError
 from hypermap_lite.evaluation.outcome import Outcome, Replicate, State
@@ -20,6 +22,9 @@ FEASIBLE_KEY = "feasible"
 
 MAX_REASON = 300
 """Characters of a failure's reason that go into a CSV."""
+
+_TERMINAL_CODES: Final = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)|[@-Z\\^_])")
+"""Escape sequences for colours, cursor and window titles."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,17 +52,38 @@ class Evaluator(Protocol):
         """Return the outcome; an exception counts as a failure, an `EvaluationError` as one with a known reason."""
 
 
-def call(evaluator: Evaluator, request: EvaluationRequest) -> Replicate:
-    """Call the black box once; whatever it raises becomes a failed outcome, its traceback a file of the trial."""
+def call(
+    evaluator: Evaluator,
+    request: EvaluationRequest,
+    caught: tuple[type[BaseException], ...] = (Exception, SystemExit),
+) -> Replicate:
+    """Call the black box once; whatever it raises becomes a failed outcome, its traceback a file of the trial.
+
+    Parameters
+    ----------
+    caught
+        What counts as the black box's own failure. In this process a `KeyboardInterrupt` is somebody's wish to stop;
+        in a worker, where nobody presses Ctrl-C, it is a failure like any other.
+    """
     start = time.perf_counter()
     try:
-        outcome = evaluator(request)
+        outcome = _call_here_only(evaluator, request)
     except EvaluationError as error:
-        outcome = failure(str(error))
-    except (Exception, SystemExit) as error:
+        outcome = failure(_message(error))
+    except caught as error:
         outcome = failure(last_line(error))
         _keep_traceback(request)
     return answer(request, outcome, time.perf_counter() - start)
+
+
+def _call_here_only(evaluator: Evaluator, request: EvaluationRequest) -> Outcome:
+    """Call the black box; a process that it forked ends here, however it comes back, and never answers too."""
+    pid = os.getpid()
+    try:
+        return evaluator(request)
+    finally:
+        if os.getpid() != pid:
+            os._exit(0)
 
 
 def answer(request: EvaluationRequest, outcome: Outcome, seconds: float) -> Replicate:
@@ -79,14 +105,16 @@ def outcome_of(result: object, objectives: Sequence[str]) -> Outcome:
     ----------
     result
         A mapping with every objective (its other finite numbers become metrics; ``{"feasible": false}`` needs no
-        objectives), or the objectives as a sequence in their order, or a number if there is only one.
+        objectives) or anything else with names, such as a pandas Series or a named tuple; or the objectives as a
+        sequence or array in their order; or a number if there is only one.
     objectives
         Their names.
 
     Returns
     -------
     Outcome
-        Completed, infeasible, or failed with the reason if a value is missing, not a number, NaN or infinite.
+        Completed, infeasible, or failed with the reason if a value is missing, not a number, NaN or infinite, or
+        ``feasible`` is neither true nor false.
     """
     entries = _by_name(result, objectives)
     if isinstance(entries, str):
@@ -97,8 +125,11 @@ def outcome_of(result: object, objectives: Sequence[str]) -> Outcome:
         for name, number in numbers.items()
         if name not in (*objectives, FEASIBLE_KEY) and number is not None and math.isfinite(number)
     }
-    if FEASIBLE_KEY not in objectives and numbers.get(FEASIBLE_KEY) == 0:
-        return Outcome(state=State.INFEASIBLE, metrics=metrics, error="the black box answered: not feasible")
+    if FEASIBLE_KEY in entries and FEASIBLE_KEY not in objectives:
+        if numbers[FEASIBLE_KEY] not in (0.0, 1.0):
+            return failure(f"'{FEASIBLE_KEY}' is {shorten(entries[FEASIBLE_KEY])}, neither true nor false", metrics)
+        if not numbers[FEASIBLE_KEY]:
+            return Outcome(state=State.INFEASIBLE, metrics=metrics, error="the black box answered: not feasible")
     for name in objectives:
         if name not in entries:
             returned = ", ".join(map(str, entries)) or "nothing"
@@ -112,17 +143,36 @@ def outcome_of(result: object, objectives: Sequence[str]) -> Outcome:
 
 def _by_name(result: object, objectives: Sequence[str]) -> Mapping[str, object] | str:
     """Return the entries of a result by name, or what is wrong with it."""
-    if isinstance(result, Mapping):
-        return result
+    named = _as_mapping(result)
+    if named is not None:
+        return named
     if len(objectives) == 1 and as_number(result) is not None:
         return {objectives[0]: result}
     expected = f"expected a mapping with {', '.join(map(repr, objectives))}"
-    if isinstance(result, str | bytes) or not hasattr(result, "__len__") or not hasattr(result, "__iter__"):
+    if not _has_an_order(result):
         return f"the result is {shorten(result)}; {expected}"
     items = list(result)
     if len(items) != len(objectives):
         return f"the result has {len(items)} numbers for {len(objectives)} objectives; {expected}"
     return dict(zip(objectives, items, strict=True))
+
+
+def _as_mapping(result: Any) -> Mapping[str, object] | None:
+    """Return a result that has names (mapping, pandas Series, named tuple) as a mapping; None for any other."""
+    if isinstance(result, Mapping):
+        return result
+    if hasattr(result, "keys") and hasattr(result, "__getitem__"):
+        return {key: result[key] for key in result.keys()}  # noqa: SIM118 - iterating a Series gives its values
+    if isinstance(result, tuple) and hasattr(result, "_asdict"):
+        return dict(result._asdict())
+    return None
+
+
+def _has_an_order(result: object) -> TypeGuard[Iterable[object]]:
+    """Tell whether a result is a sequence or an array of numbers, not text, and not a set."""
+    if isinstance(result, Sequence):
+        return not isinstance(result, str | bytes | bytearray | memoryview)
+    return hasattr(result, "__array__") and getattr(result, "ndim", 0) > 0
 
 
 def shorten(value: object) -> str:
@@ -142,8 +192,8 @@ def as_number(value: object) -> float | None:
 
 
 def failure(reason: str, metrics: Mapping[str, float] | None = None) -> Outcome:
-    """Return a failed outcome; its reason is put on one line and cut to a sensible length."""
-    line = " ".join(reason.split()) or "no reason given"
+    """Return a failed outcome; its reason is put on one line of printable text and cut to a sensible length."""
+    line = printable(reason) or "no reason given"
     return Outcome(
         state=State.FAILED,
         metrics=metrics or {},
@@ -151,10 +201,23 @@ def failure(reason: str, metrics: Mapping[str, float] | None = None) -> Outcome:
     )
 
 
+def printable(text: str) -> str:
+    """Return text on one line, without colours, and with control characters spelt out, as in ``\\x00``."""
+    line = " ".join(_TERMINAL_CODES.sub("", text).split())
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in line)
+
+
 def last_line(error: BaseException) -> str:
     """Return an exception as Python prints it below a traceback, as in ``ValueError: not a number``."""
-    name, message = type(error).__name__, " ".join(str(error).split())
+    name, message = type(error).__name__, printable(_message(error))
     return f"{name}: {message}" if message else name
+
+
+def _message(error: BaseException) -> str:
+    try:
+        return str(error)
+    except BaseException:  # it is the black box's code that runs here
+        return "(an exception whose message cannot be shown)"
 
 
 def _keep_traceback(request: EvaluationRequest) -> None:
@@ -162,5 +225,5 @@ def _keep_traceback(request: EvaluationRequest) -> None:
     try:
         request.directory.mkdir(parents=True, exist_ok=True)
         request.file("traceback.log").write_text(traceback.format_exc(), encoding="utf-8", errors="backslashreplace")
-    except OSError:
+    except Exception:
         return

@@ -1,8 +1,11 @@
 """Tests for evaluator.py."""
 
+import collections
 import math
+import os
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from hypermap_lite.errors import EvaluationError
@@ -26,6 +29,27 @@ def test_mapping_gives_objectives_and_metrics():
 @pytest.mark.parametrize("result", [(1.0, 2), [1.0, 2.0], np.array([1.0, 2.0])], ids=["tuple", "list", "array"])
 def test_sequence_gives_objectives_in_order(result):
     assert outcome_of(result, ["f", "g"]).values == {"f": 1.0, "g": 2.0}
+
+
+Point = collections.namedtuple("Point", ["g", "f"])
+
+
+@pytest.mark.parametrize(
+    "result", [pd.Series([2.0, 1.0], index=["g", "f"]), Point(g=2.0, f=1.0)], ids=["series", "named tuple"]
+)
+def test_names_of_a_result_go_before_its_order(result):
+    assert outcome_of(result, ["f", "g"]).values == {"f": 1.0, "g": 2.0}
+
+
+@pytest.mark.parametrize("result", [{1.0, 2.0}, {"f": 1.0, "g": 2.0}.values(), b"12"], ids=["set", "values", "bytes"])
+def test_collection_without_a_firm_order_is_a_failure(result):
+    outcome = outcome_of(result, ["f", "g"])
+    assert outcome.state is State.FAILED
+    assert "expected a mapping with 'f', 'g'" in outcome.error
+
+
+def test_series_of_one_value_with_another_name_is_not_the_objective():
+    assert "has no 'f' (it has: g)" in outcome_of(pd.Series({"g": 1.0}), ["f"]).error
 
 
 @pytest.mark.parametrize("result", [3, 3.0, np.float64(3), np.array(3.0), np.array([3.0]), [3.0]])
@@ -61,6 +85,22 @@ def test_unusable_result_is_a_failure_with_its_reason(result, reason):
 def test_result_may_say_that_the_configuration_is_not_allowed(no):
     outcome = outcome_of({"feasible": no, "depth": 2.0}, ["f"])
     assert (outcome.state, outcome.metrics) == (State.INFEASIBLE, {"depth": 2.0})
+
+
+@pytest.mark.parametrize("answer", ["false", "no", None, 0.5, math.nan, 2, []])
+def test_feasible_is_true_or_false_and_nothing_else(answer):
+    outcome = outcome_of({"feasible": answer, "f": 1.0}, ["f"])
+    assert outcome.state is State.FAILED
+    assert outcome.error == f"'feasible' is {answer!r}, neither true nor false"
+
+
+@pytest.mark.parametrize("yes", [True, 1, np.True_, 1.0])
+def test_feasible_result_is_complete(yes):
+    assert outcome_of({"feasible": yes, "f": 1.0}, ["f"]).state is State.COMPLETED
+
+
+def test_objective_may_be_called_feasible():
+    assert outcome_of({"feasible": 0.5}, ["feasible"]).values == {"feasible": 0.5}
 
 
 def test_feasible_result_needs_its_objectives_and_keeps_no_such_metric():
@@ -104,3 +144,40 @@ def test_folder_that_cannot_be_written_does_not_hide_the_failure(tmp_path):
 
 def test_long_reason_is_cut():
     assert len(failure("x" * 1000).error) == 300
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt("why"), GeneratorExit("why"), BaseException("why")])
+def test_worker_counts_whatever_is_raised_as_a_failure(tmp_path, error):
+    outcome = call(raising(error), request(tmp_path), caught=(BaseException,)).outcome
+    assert (outcome.state, outcome.error) == (State.FAILED, f"{type(error).__name__}: why")
+
+
+@pytest.mark.parametrize("kind", [ValueError, EvaluationError])
+def test_exception_whose_message_cannot_be_shown_is_a_failure(tmp_path, kind):
+    class Mute(kind):
+        def __str__(self):
+            raise KeyboardInterrupt
+
+    outcome = call(raising(Mute()), request(tmp_path)).outcome
+    assert "an exception whose message cannot be shown" in outcome.error
+
+
+def test_forked_child_does_not_come_back_from_the_call(tmp_path):
+    parent = os.getpid()
+
+    def fork_and_fall_through(request):
+        if os.fork() == 0:
+            raise SystemExit(7)
+        _, status = os.wait()
+        return Outcome(state=State.COMPLETED, values={"f": float(os.waitstatus_to_exitcode(status))})
+
+    outcome = call(fork_and_fall_through, request(tmp_path)).outcome
+    if os.getpid() != parent:  # before the fix: leave the test session to the parent
+        os._exit(1)
+    assert outcome.values == {"f": 0.0}
+
+
+def test_reason_is_one_line_of_printable_text():
+    shown = failure("\x1b[1;31mred\x1b[0m\x00 \x1b]0;title\x07and\u2028new\u202e line\x9b2J").error
+    assert shown == r"red\x00 and new\u202e line\x9b2J"
+    assert shown.isprintable()
