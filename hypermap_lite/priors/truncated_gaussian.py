@@ -57,10 +57,17 @@ def gaussian_on(axis: Axis, mean: float, std: float) -> TruncatedNormal:
     try:
         location, scale = axis.locate(mean), min(max(axis.scale_std(std), NARROWEST), FLATTEST)
     except ScenarioError as error:
-        raise ScenarioError(
-            "$.mean", error.problem, allowed=error.allowed, hint="Give ordinal and categorical parameters 'weights'."
-        ) from None
+        hint = error.hint if _is_numeric(axis) else "Give ordinal and categorical parameters 'weights'."
+        raise ScenarioError("$.mean", error.problem, allowed=error.allowed, hint=hint) from None
     return TruncatedNormal(min(max(location, -FARTHEST * scale), 1 + FARTHEST * scale), scale)
+
+
+def _is_numeric(axis: Axis) -> bool:
+    try:
+        axis.scale_std(1.0)
+    except ScenarioError:
+        return False
+    return True
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,3 +58,13 @@ def test_absurd_numbers_still_give_a_density(mean: float, std: float) -> None:
     assert np.all((u >= 0) & (u <= 1))
     assert np.isfinite(density.log_density(np.array([density.mode()]))).all()
     assert density.cdf(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0])
+
+
+def test_weights_are_advised_only_where_there_is_no_numeric_axis() -> None:
+    prior = GaussianPrior(mean=-1, std=1)
+    with pytest.raises(ScenarioError, match="no numeric axis") as categorical:
+        prior.on(CategoricalParameter(name="c", values=("a", "b")))
+    with pytest.raises(ScenarioError, match="no place on the logarithmic axis") as logarithmic:
+        prior.on(RealParameter(name="r", low=0.1, high=10, log=True))
+    assert "weights" in categorical.value.hint
+    assert (logarithmic.value.hint, logarithmic.value.allowed) == ("", "> 0")
