@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -39,7 +40,7 @@ def build_scenario(document: Mapping[str, Any], *, directory: Path, layers: tupl
         acquisition=_acquisition(document["acquisition"]),
         maximizer=_component(document["maximizer"], "$.maximizer"),
         evaluator=_evaluator(document["evaluator"]),
-        output=OutputSpec(**document["output"]),
+        output=OutputSpec(directory=os.path.expanduser(document["output"]["directory"])),
         canonical=document,
         directory=directory,
         layers=layers,

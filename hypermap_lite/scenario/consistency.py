@@ -7,7 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from hypermap_lite.errors import ScenarioError, nearest
+from hypermap_lite.evaluation.placeholders import BUILT_IN
 from hypermap_lite.history.rows import RESERVED_COLUMNS
+from hypermap_lite.scenario.defaults import default_samples
 from hypermap_lite.scenario.messages import enumerate_names
 
 RESERVED_NAMES: Final = RESERVED_COLUMNS | {"feasible"}
@@ -33,6 +35,9 @@ def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str
         if name in counts and name in parameters:
             problem = f"a parameter and an objective are called '{name}'"
             raise ScenarioError(path, problem, allowed="each name once", hint="Both are columns of the history.")
+        if name in BUILT_IN and path == f"$.input_parameters.{name}":
+            problem = f"{{{name}}} stands for something else in the commands of evaluators"
+            raise ScenarioError(path, problem, allowed="any other name", hint=f"Call it '{name}_value', say.")
         if name in RESERVED_NAMES or name in standard_errors:
             problem = f"'{name}' is the name of a column of the result files"
             raise ScenarioError(path, problem, allowed="any other name", hint=f"Call it '{name}_value', say.")
@@ -81,8 +86,9 @@ def _check_known(path: str, name: str, known: Iterable[str], what: str) -> None:
 
 
 def _check_budget(document: Mapping[str, Any]) -> None:
+    """Refuse a design that is larger than the budget, unless it has the default size: nobody asked for that one."""
     samples, evaluations = document["design_of_experiment"]["number_of_samples"], document["budget"]["evaluations"]
-    if samples > evaluations:
+    if samples > evaluations and samples != default_samples(document):
         raise ScenarioError(
             "$.design_of_experiment.number_of_samples",
             f"a design of {samples} does not fit into a budget of {evaluations} evaluations",

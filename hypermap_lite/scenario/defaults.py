@@ -37,12 +37,20 @@ def fill_derived(document: Mapping[str, Any]) -> dict[str, Any]:
     if design["type"] == "auto":
         design["type"] = "prior_sampling" if has_priors(document) else "sobol"
     if design["number_of_samples"] is None:
-        wanted = max(SAMPLES_PER_PARAMETER * len(document["input_parameters"]), MIN_SAMPLES)
-        design["number_of_samples"] = min(wanted, document["budget"]["evaluations"])
+        design["number_of_samples"] = default_samples(document)
     derived["design_of_experiment"] = design
     directory = document["output"]["directory"] or f"outputs/{document['application_name']}"
     derived["output"] = {**document["output"], "directory": directory}
     return derived
+
+
+def default_samples(document: Mapping[str, Any]) -> int:
+    """Return the size of the design for want of one the user gave.
+
+    The budget has no part in it, so that a run goes on with another budget as if it had had it from the start; a
+    smaller budget ends the run within the design.
+    """
+    return max(SAMPLES_PER_PARAMETER * len(document["input_parameters"]), MIN_SAMPLES)
 
 
 def has_priors(document: Mapping[str, Any]) -> bool:

@@ -7,11 +7,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.scenario.building import build_scenario
 from hypermap_lite.scenario.consistency import check_consistency
 from hypermap_lite.scenario.defaults import fill, fill_derived, has_priors
-from hypermap_lite.scenario.merging import apply_override, merge, merge_layers, read_layers
+from hypermap_lite.scenario.merging import apply_override, bases_of, merge, merge_layers, read_layers
 from hypermap_lite.scenario.messages import check_document
 from hypermap_lite.scenario.model import Scenario
 from hypermap_lite.scenario.presets import PRESETS
@@ -69,10 +71,16 @@ def complete_document(document: Mapping[str, Any]) -> dict[str, Any]:
 
 def _layers_of(source: Mapping[str, Any]) -> list[Layer]:
     try:
-        document = parse_json(json.dumps(source), "")
-    except TypeError as error:
+        document = parse_json(json.dumps(source, default=_plain_value), "")
+    except (TypeError, ValueError, RecursionError) as error:
+        if isinstance(error, ScenarioError):
+            raise
         raise ScenarioError("$", f"this is not JSON: {error}", allowed="JSON values only") from None
-    if not document.get("extends"):
-        return [Layer("", document)]
-    bases = document["extends"] if isinstance(document["extends"], list) else [document["extends"]]
-    return [*(layer for base in bases for layer in read_layers(Path(base))), Layer("", document)]
+    return [*(layer for base in bases_of(document, "") for layer in read_layers(Path(base))), Layer("", document)]
+
+
+def _plain_value(value: object) -> object:
+    """Return a NumPy number or array as what JSON has for it."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    raise TypeError(f"Object of type {type(value).__name__} is not JSON serializable")

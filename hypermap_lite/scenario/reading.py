@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hypermap_lite.errors import ScenarioError, nearest
-from hypermap_lite.scenario.sources import path_of
+from hypermap_lite.scenario.sources import Keys, path_of
 
 COMMENTS = ("//", "/*", "#")
 PYTHON_WORDS = {"True": "true", "False": "false", "None": "null", "NaN": "null", "nan": "null"}
@@ -37,22 +37,38 @@ def parse_json(text: str, name: str) -> dict[str, Any]:
     if not text.strip():
         raise ScenarioError(name, "the file is empty", allowed="a JSON object: {...}")
     try:
-        document = json.loads(text, object_pairs_hook=_collect)
+        document = parse_value(text, name)
     except json.JSONDecodeError as error:
         raise _broken(error, name) from None
-    except RecursionError:
-        raise ScenarioError(name, "the JSON is nested too deeply") from None
     if not isinstance(document, dict):
         kind = "list" if isinstance(document, list) else "single value"
         raise ScenarioError("$", f"the file holds a {kind}", allowed="a JSON object: {...}", file=name)
-    check_values(document, name)
     return document
 
 
-def check_values(value: Any, name: str, keys: tuple[str | int, ...] = ()) -> None:
+def parse_value(text: str, name: str, keys: Keys = ()) -> Any:
+    """Return the checked value in a JSON text that stands at some place of a document.
+
+    Raises
+    ------
+    ScenarioError
+        If it is nested too deeply, or breaks `check_values`.
+    json.JSONDecodeError
+        If it is not JSON.
+    """
+    try:
+        value = json.loads(text, object_pairs_hook=_collect, parse_int=_parse_integer)
+    except RecursionError:
+        raise ScenarioError(name, "the JSON is nested too deeply") from None
+    check_values(value, name, keys)
+    return value
+
+
+def check_values(value: Any, name: str, keys: Keys = ()) -> None:
     """Raise a `ScenarioError` at a number that is not finite or an object that repeats a key."""
     if isinstance(value, float) and not math.isfinite(value):
-        raise ScenarioError(path_of(keys), f"{value} is no JSON number", allowed="a finite number", file=name)
+        problem = f"{value} is no JSON number, or one too large"
+        raise ScenarioError(path_of(keys), problem, allowed="a finite number", file=name)
     if isinstance(value, RepeatedKeys):
         problem = f"the key '{value.repeated}' stands twice"
         raise ScenarioError(path_of(keys), problem, allowed="each key once", hint="Rename or drop one.", file=name)
@@ -76,6 +92,11 @@ def _read_text(file: Path) -> str:
         raise ScenarioError(str(file), problem, allowed="UTF-8 text", hint="Save the file as UTF-8.") from None
     except OSError as error:
         raise ScenarioError(str(file), f"cannot be read: {error.strerror or error}") from None
+
+
+def _parse_integer(digits: str) -> int | float:
+    """Return an integer; one beyond the range of floats is as infinite as it would be with a decimal point."""
+    return int(digits) if math.isfinite(float(digits)) else float(digits)
 
 
 def _collect(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

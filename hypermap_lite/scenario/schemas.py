@@ -88,6 +88,11 @@ def allows_any_key(schema: Schema) -> bool:
     return "properties" not in schema
 
 
+def has_entries(schema: Schema) -> bool:
+    """Tell whether an object of this schema holds entries that the user names, all of one schema."""
+    return isinstance(schema.get("additionalProperties"), Mapping)
+
+
 def all_properties(schema: Schema) -> dict[str, Schema]:
     """Return the keys a section may have in any of its variants."""
     known = dict(schema.get("properties", {}))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, TypeAlias
 
 Keys: TypeAlias = tuple[str | int, ...]
@@ -21,16 +22,24 @@ class Layer:
     document: Mapping[Any, Any]
     """Its content as written."""
 
+    directory: Path | None = None
+    """Folder of the file; None for a Python mapping and for ``--set``."""
 
-def origin_of(path: str, layers: Sequence[Layer]) -> str:
-    """Return the name of the layer that wrote the value at a path, or the nearest value above it."""
+
+def layer_of(path: str, layers: Sequence[Layer]) -> Layer | None:
+    """Return the layer that wrote the value at a path, or the nearest value above it; else the last file."""
     keys = keys_of(path)
     for depth in range(len(keys), 0, -1):
         for layer in reversed(layers):
             if _has(layer.document, keys[:depth]):
-                return layer.name
-    files = [layer.name for layer in layers if not layer.name.startswith("--set")]
-    return files[-1] if files else ""
+                return layer
+    return next((layer for layer in reversed(layers) if not layer.name.startswith("--set")), None)
+
+
+def origin_of(path: str, layers: Sequence[Layer]) -> str:
+    """Return the name of the layer that wrote the value at a path, or the nearest value above it."""
+    layer = layer_of(path, layers)
+    return "" if layer is None else layer.name
 
 
 def keys_of(path: str) -> Keys:

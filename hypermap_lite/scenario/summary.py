@@ -74,7 +74,8 @@ def _objectives(scenario: Scenario) -> list[str]:
 
 def _method(scenario: Scenario) -> list[str]:
     """Say which evaluations are chosen how, and what of the scenario decides that."""
-    n, total = scenario.design.number_of_samples, scenario.budget.evaluations
+    total = scenario.budget.evaluations
+    n = min(scenario.design.number_of_samples, total)
     lines = [f"evaluations 1 to {n}: {scenario.design.type}"]
     if scenario.optimizer.type != "bayesian":
         return [*lines, f"evaluations {n + 1} to {total}: {scenario.optimizer.type}"] if n < total else lines
@@ -99,7 +100,7 @@ def _prior_use(scenario: Scenario) -> str:
         return "priors: not in the acquisition (prior_weighting is none)"
     options = dict(weighting.options)
     if options.get("beta") is None:
-        options["beta"] = 0.1 * (scenario.budget.evaluations - scenario.design.number_of_samples)
+        options["beta"] = 0.1 * max(scenario.budget.evaluations - scenario.design.number_of_samples, 1)
     return f"priors: acquisition weighted by {weighting.type}{_options(options)}"
 
 

@@ -249,8 +249,8 @@ BAD: dict[str, Bad] = {
     ),
     # budget and evaluator
     "budget_smaller_than_design": Bad(
-        changed("budget", {"evaluations": 5})[:-1] + ', "design_of_experiment": {"number_of_samples": 8}}',
-        ("$.design_of_experiment.number_of_samples", "design of 8", "budget of 5", "1 to 5"),
+        changed("budget", {"evaluations": 5})[:-1] + ', "design_of_experiment": {"number_of_samples": 7}}',
+        ("$.design_of_experiment.number_of_samples", "design of 7", "budget of 5", "1 to 5"),
     ),
     "zero_batch_size": Bad(changed("budget", {"batch_size": 0}), ("$.budget.batch_size", "0 is too small", ">= 1")),
     "unknown_evaluator": Bad(changed("evaluator", "shell"), ("$.evaluator.type", '"shell"', "python, command, none")),
@@ -288,4 +288,35 @@ BAD: dict[str, Bad] = {
     "extends_itself": Bad(changed("extends", "bad.json"), ("$.extends", "bad.json -> bad.json")),
     "extends_nothing": Bad(changed("extends", "base.jsn"), ("$.extends", '"base.jsn"', "relative to")),
     "extends_a_number": Bad(changed("extends", 3), ("$.extends", "3", "a file name or a list")),
+    "null_that_removes_nothing": Bad(
+        changed("input_parameters.y", None), ("$.input_parameters.y", "null removes an entry", "Drop it")
+    ),
+    "null_in_a_joint_prior": Bad(
+        changed("priors", [{"type": "mixture", "components": [{"mean": {"x": None}, "std": {"x": 1}}]}]),
+        ("$.priors[0].components[0].mean.x", "null removes an entry"),
+    ),
+    # names and numbers beyond what files and floats can hold
+    "newline_in_a_parameter_name": Bad(
+        changed("input_parameters.p\n", {"parameter_type": "real", "values": [0, 1]}),
+        ("$.input_parameters", '"p\\n"', "letters, digits, _ and -"),
+    ),
+    "newline_in_an_objective_name": Bad(changed("objectives.0.name", "cost\n"), ("$.objectives[0].name", '"cost\\n"')),
+    "newline_in_the_application_name": Bad(changed("application_name", "demo\n"), ("$.application_name", '"demo\\n"')),
+    "newline_in_the_function": Bad(
+        changed("evaluator", {"type": "python", "function": "a:b\n"}), ("$.evaluator.function", '"a:b\\n"')
+    ),
+    "integer_beyond_floats": Bad(
+        changed("input_parameters.x.values", [0, 10**400]), ("$.input_parameters.x.values[1]", "too large", "finite")
+    ),
+    "integer_of_many_digits": Bad('{"seed": ' + "9" * 5000 + "}", ("$.seed", "too large", "finite")),
+    "integer_beyond_floats_as_a_name": Bad(
+        changed("application_name", 10**400), ("$.application_name", "too large", "finite")
+    ),
+    **{
+        f"parameter_named_{name}": Bad(
+            changed(f"input_parameters.{name}", {"parameter_type": "real", "values": [0, 1]}),
+            (f"$.input_parameters.{name}", f"{{{name}}} stands for something else", f"'{name}_value'"),
+        )
+        for name in ("python", "params_json", "params_file", "result_file", "trial_dir", "seed", "trial", "replicate")
+    },
 }

@@ -43,5 +43,15 @@ def test_a_joint_prior_may_have_several_components() -> None:
     check_consistency(complete(priors=[{"type": "mixture", "components": [component, component]}]))
 
 
+def test_a_design_of_the_default_size_may_be_larger_than_the_budget() -> None:
+    check_consistency(complete(budget={"evaluations": 3}))
+    with pytest.raises(ScenarioError, match="a design of 4 does not fit into a budget of 3"):
+        complete(budget={"evaluations": 3}, design_of_experiment={"number_of_samples": 4})
+
+
+def test_an_objective_may_be_called_like_a_placeholder() -> None:
+    check_consistency(complete(objectives=[{"name": "python"}]))
+
+
 def test_a_design_may_take_the_whole_budget() -> None:
     check_consistency(complete(budget={"evaluations": 8}, design_of_experiment={"number_of_samples": 8}))

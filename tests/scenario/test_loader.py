@@ -59,8 +59,10 @@ def test_a_prior_makes_the_default_design_sample_from_it() -> None:
     assert load_scenario(with_sections(priors=priors)).design.type == "prior_sampling"
 
 
-def test_a_small_budget_shrinks_the_default_design() -> None:
-    assert load_scenario(with_sections(budget={"evaluations": 3})).design.number_of_samples == 3
+def test_the_budget_has_no_part_in_the_default_design() -> None:
+    small, large = (load_scenario(with_sections(budget={"evaluations": n})) for n in (3, 30))
+    assert small.design == large.design
+    assert load_scenario(small.canonical) == small
 
 
 def test_a_bare_string_is_short_for_an_object_with_that_type() -> None:
@@ -116,7 +118,33 @@ def test_a_mistake_in_a_base_names_the_base(tmp_path: Path) -> None:
 
 def test_a_mapping_that_is_not_json_is_an_error() -> None:
     with pytest.raises(ScenarioError, match="not JSON"):
-        load_scenario(with_sections(seed=np.int64(3)))
+        load_scenario(with_sections(seed={3}))
+
+
+def test_numpy_numbers_are_numbers() -> None:
+    x = {"parameter_type": "real", "values": np.array([0.0, 5.0]), "parameter_default": np.float32(0.5)}
+    scenario = load_scenario(with_sections(seed=np.int64(3), input_parameters={"x": x}))
+    assert scenario.seed == 3
+    assert (scenario.parameters[0].values, scenario.parameters[0].parameter_default) == ((0.0, 5.0), 0.5)
+
+
+def test_a_mapping_that_extends_a_number_is_an_error() -> None:
+    with pytest.raises(ScenarioError, match=r"\$\.extends: 5 names no file"):
+        load_scenario({"extends": 5})
+
+
+def test_a_mapping_that_holds_itself_is_an_error() -> None:
+    loop: dict[str, Any] = {}
+    loop["budget"] = loop
+    with pytest.raises(ScenarioError, match="not JSON"):
+        load_scenario(loop)
+
+
+def test_the_home_folder_may_be_written_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", "/home/me")
+    scenario = load_scenario(GOOD, overrides=["output.directory=~/runs/a"])
+    assert scenario.output.directory == "/home/me/runs/a"
+    assert scenario.canonical["output"]["directory"] == "~/runs/a"
 
 
 def test_a_mapping_can_extend_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

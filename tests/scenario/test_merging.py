@@ -44,6 +44,16 @@ def test_null_removes_a_parameter() -> None:
     }
 
 
+def test_null_for_a_parameter_that_no_base_has_names_the_file_and_the_nearest(tmp_path: Path) -> None:
+    write(tmp_path, base=GOOD, leaf={"extends": "base.json", "input_parameters": {"sizes": None}})
+    with pytest.raises(ScenarioError, match=r"leaf\.json: \$\.input_parameters\.sizes: null removes[\s\S]*'size'"):
+        load_scenario(tmp_path / "leaf.json")
+
+
+def test_null_among_versions_is_nothing() -> None:
+    assert load_scenario(GOOD | {"versions": {"numpy": None}}) == load_scenario(GOOD)
+
+
 def test_parameters_keep_the_base_order_and_new_ones_follow() -> None:
     base = {"input_parameters": {"b": REAL, "a": REAL}}
     over = {"input_parameters": {"c": REAL, "a": {"values": [0, 2]}}}
@@ -159,6 +169,15 @@ def test_an_override_of_a_type_drops_the_options_of_the_first() -> None:
         ),
         pytest.param("objectives.gain.goal=minimize", "no item 'gain'", id="name_in_a_list"),
         pytest.param("seed.x=3", r"\$\.seed: .* is an object", id="inside_a_number"),
+        pytest.param("budget.²=3", r"\$\.budget\.²: unknown key", id="digit_that_is_no_number"),
+        pytest.param("objectives.99999999999999999999=3", "no item '9999", id="huge_index"),
+        pytest.param("budget.minutes=NaN", r"\$\.budget\.minutes: nan is no JSON number", id="not_a_number"),
+        pytest.param("evaluator.timeout_seconds=Infinity", r"\$\.evaluator\.timeout_seconds: inf", id="infinity"),
+        pytest.param("seed=" + "9" * 5000, r"\$\.seed: inf is no JSON number, or one too large", id="huge_integer"),
+        pytest.param('budget={"minutes": 1, "minutes": 2}', r"\$\.budget: .*stands twice", id="repeated_key"),
+        pytest.param('budget={"minutes": [1e999]}', r"\$\.budget\.minutes\[0\]: inf", id="infinity_inside"),
+        pytest.param("description=" + "[" * 100_000, "nested too deeply", id="deep"),
+        pytest.param("input_parameters.y=null", r"\$\.input_parameters\.y: null removes", id="null_for_nothing"),
         pytest.param("bugdet.evaluations=3", r"\$\.bugdet: unknown key[\s\S]*'budget'", id="unknown_section"),
     ],
 )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from hypermap_lite.scenario.sources import Layer, keys_of, origin_of, path_of
+from hypermap_lite.scenario.sources import Layer, keys_of, layer_of, origin_of, path_of
 
 LAYERS = (
     Layer("base.json", {"seed": 1, "objectives": [{"name": "a"}], "budget": {"evaluations": 5}}),
@@ -28,6 +30,12 @@ LAYERS = (
 )
 def test_the_origin_is_the_layer_that_wrote_the_value(path: str, origin: str) -> None:
     assert origin_of(path, LAYERS) == origin
+
+
+def test_layers_know_their_folder() -> None:
+    layers = (Layer("a/base.json", {"seed": 1}, Path("a")), Layer("--set seed=2", {"seed": 2}))
+    assert [getattr(layer_of(path, layers), "directory", "") for path in ("$.budget", "$.seed")] == [Path("a"), None]
+    assert layer_of("$.seed", ()) is None
 
 
 def test_keys_and_paths_are_inverse() -> None:
