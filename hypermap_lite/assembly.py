@@ -237,8 +237,10 @@ def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = No
 
 def _surroundings(spec: ComponentSpec, scenario: Scenario) -> dict[str, Any]:
     if spec.type == "command":
-        return {"parameters": tuple(p.name for p in scenario.parameters), "working_directory": scenario.directory}
-    return {"search_path": (str(scenario.directory.resolve()), str(Path.cwd()))}
+        names = tuple(p.name for p in scenario.parameters)
+        return {"parameters": names, "working_directory": scenario.command_folder()}
+    folders = (*scenario.folders_of(f"{spec.path}.function"), Path.cwd())
+    return {"search_path": tuple(dict.fromkeys(map(str, folders)))}
 
 
 def validate(scenario: Scenario) -> None:

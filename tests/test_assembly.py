@@ -1,5 +1,8 @@
 """The composition root."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -71,6 +74,39 @@ def test_a_member_that_refuses_its_options_is_named_by_its_place() -> None:
 def test_without_an_evaluator_the_message_says_what_to_do() -> None:
     with pytest.raises(ScenarioError, match=r"hypermap_lite\.optimize"):
         assembly.build_evaluator(load())
+
+
+def write_layers(tmp_path: Path, evaluator: dict[str, object]) -> Path:
+    """Write `common/base.json`, which says what to call, and a leaf beside it that extends it; return the leaf."""
+    for folder in ("common", "mine"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "common" / "base.json").write_text(json.dumps(scenario_of(evaluator=evaluator)))
+    leaf = tmp_path / "mine" / "leaf.json"
+    leaf.write_text('{"extends": "../common/base.json"}')
+    return leaf
+
+
+@pytest.mark.parametrize("folder", ["common", "mine"])
+def test_a_module_is_found_beside_the_file_that_names_it_or_beside_the_scenario(tmp_path: Path, folder: str) -> None:
+    leaf = write_layers(tmp_path, {"type": "python", "function": f"black_box_in_{folder}:f"})
+    (tmp_path / folder / f"black_box_in_{folder}.py").write_text("def f(c): return 1")
+    assembly.build_evaluator(load_scenario(leaf))
+
+
+@pytest.mark.parametrize("command", [["./simulate"], ["sh", "simulate"]], ids=["program", "argument"])
+@pytest.mark.parametrize("folder", ["common", "mine"])
+def test_a_command_runs_in_the_folder_that_holds_its_files(tmp_path: Path, folder: str, command: list[str]) -> None:
+    leaf = write_layers(tmp_path, {"type": "command", "command": command})
+    (tmp_path / folder / "simulate").write_text("#!/bin/sh\n")
+    (tmp_path / folder / "simulate").chmod(0o755)
+    assert assembly.build_evaluator(load_scenario(leaf)).working_directory == tmp_path / folder
+
+
+def test_a_command_of_installed_programs_runs_beside_the_file_that_names_it(tmp_path: Path) -> None:
+    leaf = write_layers(tmp_path, {"type": "command", "command": ["echo"]})
+    assert assembly.build_evaluator(load_scenario(leaf)).working_directory == tmp_path / "common"
+    override = 'evaluator.command=["echo", "1"]'
+    assert assembly.build_evaluator(load_scenario(leaf, overrides=[override])).working_directory == tmp_path / "mine"
 
 
 def test_a_given_function_takes_the_place_of_the_evaluator() -> None:

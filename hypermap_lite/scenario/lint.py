@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
+from hypermap_lite.scenario.command_lint import lint_command
 from hypermap_lite.scenario.model import ParameterSpec, Scenario
 
 Part: TypeAlias = tuple[Mapping[str, float], Mapping[str, float], float]
@@ -29,6 +30,7 @@ def lint(scenario: Scenario) -> list[str]:
         *_reference_points(scenario),
         *_budget(scenario),
         *_workers(scenario),
+        *lint_command(scenario),
     ]
     return [f"{path}: {text}" for path, text in warnings]
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hypermap_lite.objectives import Objective
-from hypermap_lite.scenario.sources import Layer, origin_of
+from hypermap_lite.scenario.sources import Layer, layer_of, origin_of
 from hypermap_lite.typing import Value
 
 
@@ -128,7 +128,7 @@ class Scenario:
     """The effective scenario as JSON: inheritance and overrides applied, every default filled in."""
 
     directory: Path = field(default_factory=Path, compare=False)
-    """Folder of the scenario file: evaluators are imported and run from here."""
+    """Folder of the scenario file."""
 
     layers: tuple[Layer, ...] = field(default=(), compare=False, repr=False)
     """The files and overrides it was put together from, the most basic first."""
@@ -141,3 +141,17 @@ class Scenario:
     def origin_of(self, path: str) -> str:
         """Return the name of the file, or the ``--set``, that wrote the value at a path; empty if there is none."""
         return origin_of(path, self.layers)
+
+    def folders_of(self, path: str) -> tuple[Path, ...]:
+        """Return where files named at a path are looked for: beside the file that says it, then beside this one."""
+        layer = layer_of(path, self.layers)
+        first = self.directory if layer is None or layer.directory is None else layer.directory
+        return tuple(dict.fromkeys((first.resolve(), self.directory.resolve())))
+
+    def command_folder(self) -> Path:
+        """Return where the evaluator's command runs: the first of its folders that holds a file it names."""
+        folders = self.folders_of("$.evaluator.command")
+        command = self.evaluator.component.options.get("command", ()) if self.evaluator.component else ()
+        words = [word for argument in command for word in argument.split() if not Path(word).is_absolute()]
+        holding = (folder for folder in folders if any((folder / word).is_file() for word in words))
+        return next(holding, folders[0])

@@ -137,6 +137,11 @@ def test_priors_that_nothing_uses_are_named() -> None:
     assert warnings(priors=priors, design_of_experiment="sobol") == []
 
 
+def test_commands_are_looked_at() -> None:
+    (warning,) = warnings(evaluator={"type": "command", "command": ["echo", "{x:.3f}", "{mode}"]})
+    assert warning.startswith("$.evaluator.command: no placeholder passes on 'x'")
+
+
 def test_workers_that_never_get_a_call_are_named() -> None:
     (warning,) = warnings(evaluator={"workers": 4, "replicates": 3})
     assert "only 3 calls" in warning
