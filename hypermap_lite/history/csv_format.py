@@ -36,12 +36,13 @@ def _quote(field: str) -> str:
 
 
 def complete_length(content: bytes) -> int:
-    """Return how many bytes of a CSV file are whole records."""
+    """Return how many bytes of a CSV file are whole records; blank lines at its end do not count."""
     end, start, is_quoted = 0, 0, False
     while (newline := content.find(b"\n", start)) >= 0:
+        is_blank = not is_quoted and not content[start:newline].strip()
         is_quoted ^= content.count(b'"', start, newline) % 2 == 1
         start = newline + 1
-        if not is_quoted:
+        if not is_quoted and not is_blank:
             end = start
     return end
 
@@ -55,7 +56,7 @@ def read_records(path: Path) -> list[list[str]]:
         return []
     content = path.read_bytes()
     end = complete_length(content)
-    if end < len(content):
+    if content[end:].strip():
         logger.warning("%s: the last line was cut off and is dropped: %r", path, content[end : end + 80])
     text = content[:end].decode("utf-8-sig", errors="replace")
     return list(csv.reader(io.StringIO(text, newline="")))

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import logging
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from itertools import count
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Final, Self
 
 import numpy as np
 
 from hypermap_lite.errors import RunFolderError
-from hypermap_lite.evaluation.outcome import Evaluation, Replicate
+from hypermap_lite.evaluation.outcome import Evaluation, Replicate, State
+from hypermap_lite.history.backups import keep_copies
 from hypermap_lite.history.csv_format import complete_length, format_record, parse_rows, read_records
 from hypermap_lite.history.files import append_durably, explained, truncate, write_atomically
 from hypermap_lite.history.lock import FolderLock
@@ -25,6 +26,9 @@ from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.space.search_space import SearchSpace
 
 logger = logging.getLogger(__name__)
+
+FAILURES: Final = frozenset({State.FAILED, State.TIMEOUT})
+"""States of evaluations that another try may mend."""
 
 
 class RunFolder:
@@ -40,14 +44,23 @@ class RunFolder:
         What the columns mean.
     canonical
         The effective scenario as JSON, written beside the results and compared with what is there.
+    function
+        Name of the Python function that is called in place of the scenario's evaluator, if one was passed.
     """
 
     def __init__(
-        self, path: str | Path, *, space: SearchSpace, objectives: Sequence[Objective], canonical: Mapping[str, Any]
+        self,
+        path: str | Path,
+        *,
+        space: SearchSpace,
+        objectives: Sequence[Objective],
+        canonical: Mapping[str, Any],
+        function: str | None = None,
     ) -> None:
         self.path = Path(path).absolute()
         self.objectives = tuple(objectives)
         self.canonical = canonical
+        self.function = function
         self.evaluations: list[Evaluation] = []
         """Rows of ``history.csv``, trial 0 first."""
         self.replicates: dict[tuple[int, int], Replicate] = {}
@@ -91,9 +104,9 @@ class RunFolder:
         with ExitStack() as stack:
             stack.enter_context(FolderLock(self.path))
             self._check_owner()
-            write_scenario(self.scenario_path, self.canonical)
             stack.enter_context(run_log(self.path / "run.log"))
             self._load()
+            write_scenario(self.scenario_path, self.canonical, self.function)
             self._open = stack.pop_all()
         return self
 
@@ -109,7 +122,7 @@ class RunFolder:
                 f"{self.path}: has a history.csv but no scenario.json, so it is not known what its rows mean\n"
                 "  hint: Choose another folder with --output-dir, or --fresh to start anew (this one is kept aside)."
             )
-        check_scenario(self.scenario_path, self.canonical)
+        check_scenario(self.scenario_path, self.canonical, self.function)
 
     def _load(self) -> None:
         for path in (self.history_path, self.evaluations_path):
@@ -122,13 +135,25 @@ class RunFolder:
             check_header(self.evaluations_path, records[0], self._calls.columns)
         rows = parse_rows(self.evaluations_path, records, self._calls.parse)
         self.replicates = {(row.trial, row.replicate): row for row in rows}
+        self._warn_of_missing_calls()
+
+    def _warn_of_missing_calls(self) -> None:
+        counts = Counter(trial for trial, _ in self.replicates)
+        incomplete = [e.trial for e in self.evaluations if counts[e.trial] < e.replicates]
+        if incomplete:
+            logger.warning(
+                "%s: calls of %d finished trials are missing, the first of trial %d (was the file cut or deleted?); "
+                "their rows in history.csv stand, and are not evaluated again",
+                *(self.evaluations_path.name, len(incomplete), incomplete[0]),
+            )
 
     def _drop_torn_line(self, path: Path) -> None:
         if path.exists():
             with explained(path):
                 content = path.read_bytes()
             if (end := complete_length(content)) < len(content):
-                logger.warning("%s: the last line was cut off and is dropped: %r", path.name, content[end:][:80])
+                if content[end:].strip():
+                    logger.warning("%s: the last line was cut off and is dropped: %r", path.name, content[end:][:80])
                 truncate(path, end)
 
     def append_replicate(self, replicate: Replicate) -> None:
@@ -162,6 +187,32 @@ class RunFolder:
             write_atomically(self.history_path, format_record(self._history.columns) + row)
         self.evaluations.append(evaluation)
 
+    def set_failures_aside(self) -> int:
+        """Take the failures at the end out of the files, so that they are evaluated again; return their number.
+
+        These are the last rows in a row that failed or ran out of time, with their calls, and the failed calls of
+        configurations that have no row yet. The files as they were are kept as ``history.csv.bak-N`` and
+        ``evaluations.csv.bak-N``.
+        """
+        n_kept = len(self.evaluations) - failures_at_end(self.evaluations)
+        n_dropped = len(self.evaluations) - n_kept
+        calls = {
+            key: call
+            for key, call in self.replicates.items()
+            if key[0] < n_kept or (key[0] >= n_kept + n_dropped and call.outcome.state not in FAILURES)
+        }
+        if not n_dropped and len(calls) == len(self.replicates):
+            return 0
+        keep_copies([self.history_path, self.evaluations_path])
+        self.evaluations = self.evaluations[:n_kept]
+        rows = "".join(map(self._history.format, self.evaluations))
+        # History first: should we be killed in between, its rows are made again from the calls that are still there.
+        write_atomically(self.history_path, format_record(self._history.columns) + rows)
+        self.replicates = calls
+        self._rewrite_calls(calls.values())
+        logger.info("%d failed evaluations at the end are set aside, to be called again", n_dropped)
+        return n_dropped
+
     def write_pareto(self) -> None:
         """Rewrite ``pareto.csv`` from the rows so far."""
         rows = [self._history.format(e) for e in self.pareto_front()]
@@ -187,18 +238,6 @@ class RunFolder:
         write_atomically(self.evaluations_path, text)
 
 
-def set_aside(path: Path) -> Path | None:
-    """Rename a run folder to the first free ``<name>.bak-N``; return the new path, or None if there was none.
-
-    Raises
-    ------
-    RunFolderError
-        If another process writes it, or it cannot be renamed.
-    """
-    if not path.exists():
-        return None
-    candidates = (path.with_name(f"{path.name}.bak-{n}") for n in count(1))
-    target = next(candidate for candidate in candidates if not candidate.exists())
-    with FolderLock(path), explained(path):
-        path.rename(target)
-    return target
+def failures_at_end(evaluations: Sequence[Evaluation]) -> int:
+    """Return how many of the last evaluations in a row failed or ran out of time."""
+    return next((n for n, e in enumerate(reversed(evaluations)) if e.state not in FAILURES), len(evaluations))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import platform
+import re
 from collections.abc import Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
@@ -17,26 +18,36 @@ from hypermap_lite.history.files import write_atomically
 logger = logging.getLogger(__name__)
 
 MAY_DIFFER: Final = (
+    "$.application_name",
     "$.budget.evaluations",
     "$.budget.minutes",
-    "$.evaluator.workers",
+    "$.evaluator.max_consecutive_failures",
     "$.evaluator.timeout_seconds",
-    "$.output",
+    "$.evaluator.workers",
+    "$.output.*",
     "$.description",
+    "$.input_parameters.*.description",
+    "$.objectives[*].description",
 )
-"""Parts of a scenario that may change between a run and its continuation: they do not change what a row means."""
+"""Parts of a scenario that may change between a run and its continuation: they do not change what a row means.
+
+A star stands for one key or index. The name matters only where it names the folder, and then it leads to another one.
+"""
+
+_FREE: Final = re.compile("|".join(re.escape(place).replace(r"\*", r"[^.\[\]]+") for place in MAY_DIFFER))
 
 LIBRARIES: Final = ("numpy", "scipy", "scikit-learn", "moocore")
 """Packages whose version can change the last bits of a suggestion."""
 
 MISSING: Final = "nothing"
+OWN_EVALUATOR: Final = "the scenario's own evaluator"
 SHOWN_DIFFERENCES: Final = 8
 
 
-def check_scenario(path: Path, canonical: Mapping[str, Any]) -> None:
+def check_scenario(path: Path, canonical: Mapping[str, Any], function: str | None = None) -> None:
     """Make sure that a run folder's ``scenario.json``, if there is one, is the scenario about to be run.
 
-    A library of another version is only warned of.
+    A library of another version is only warned of, and so is another `function` passed in place of the evaluator.
 
     Raises
     ------
@@ -46,7 +57,7 @@ def check_scenario(path: Path, canonical: Mapping[str, Any]) -> None:
     if not path.exists():
         return
     recorded = _read(path)
-    versions = recorded.pop("versions", {})
+    versions = recorded.pop("versions", None)
     differences = list(differing(recorded, _plain(canonical)))
     if differences:
         shown = [f"  {place}: {old} there, {new} now" for place, old, new in differences[:SHOWN_DIFFERENCES]]
@@ -56,15 +67,34 @@ def check_scenario(path: Path, canonical: Mapping[str, Any]) -> None:
             f"{path.parent}: holds the results of another scenario\n" + "\n".join(shown) + "\n"
             "  hint: Choose another folder with --output-dir, or --fresh to start anew (the old folder is kept aside)."
         )
-    for name, version in versions.items():
-        now = installed_versions().get(name)
-        if now != version:
-            logger.warning("%s was %s when this run began and is %s now; rows may differ", name, version, now)
+    _compare_versions(versions if isinstance(versions, dict) else {}, versions_in_use(function))
 
 
-def write_scenario(path: Path, canonical: Mapping[str, Any]) -> None:
-    """Write the effective scenario and the versions in use, unless the file says exactly that already."""
-    text = json.dumps({**_plain(canonical), "versions": installed_versions()}, indent=2, ensure_ascii=False) + "\n"
+def _compare_versions(before: Mapping[str, Any], now: Mapping[str, str]) -> None:
+    """Warn of each version that differs, and of the function; records without versions are not compared."""
+    names = [*before, *(["function"] if before and "function" in now and "function" not in before else [])]
+    for name in names:
+        absent = OWN_EVALUATOR if name == "function" else None
+        old, new = before.get(name, absent), now.get(name, absent)
+        if old != new:
+            what = "the function called" if name == "function" else name
+            logger.warning("%s was %s when this run began and is %s now; rows may differ", what, old, new)
+
+
+def write_scenario(path: Path, canonical: Mapping[str, Any], function: str | None = None) -> None:
+    """Write the effective scenario and the versions in use, unless the file says exactly that already.
+
+    Parameters
+    ----------
+    path
+        The file.
+    canonical
+        The scenario as JSON.
+    function
+        Name of the Python function that is called in place of the scenario's evaluator, if one was passed.
+    """
+    versions = versions_in_use(function)
+    text = json.dumps({**_plain(canonical), "versions": versions}, indent=2, ensure_ascii=False) + "\n"
     if not path.exists() or path.read_text(encoding="utf-8", errors="replace") != text:
         write_atomically(path, text)
 
@@ -73,9 +103,17 @@ def differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[tuple[
     """Yield place, old and new value (as JSON) of each difference between two scenarios that matters."""
     before, after = dict(_leaves("$", old)), dict(_leaves("$", new))
     for place in [*before, *(p for p in after if p not in before)]:
-        is_free = any(place == free or place.startswith(f"{free}.") for free in MAY_DIFFER)
-        if not is_free and before.get(place, MISSING) != after.get(place, MISSING):
+        if not _FREE.fullmatch(place) and before.get(place, MISSING) != after.get(place, MISSING):
             yield place, before.get(place, MISSING), after.get(place, MISSING)
+    names = [list(scenario.get("input_parameters", ())) for scenario in (old, new)]
+    if names[0] != names[1] and set(names[0]) == set(names[1]):
+        first, second = (json.dumps(order, ensure_ascii=False) for order in names)
+        yield "$.input_parameters", f"the order {first}", f"{second}"
+
+
+def versions_in_use(function: str | None = None) -> dict[str, str]:
+    """Return `installed_versions`, with the name of the function that was passed, if any."""
+    return installed_versions() | ({} if function is None else {"function": function})
 
 
 def installed_versions() -> dict[str, str]:
@@ -90,10 +128,13 @@ def installed_versions() -> dict[str, str]:
 
 
 def _leaves(place: str, value: Any) -> Iterator[tuple[str, str]]:
-    """Yield each innermost object entry with its place; lists count as one value."""
+    """Yield each innermost object entry with its place; a list without objects counts as one value."""
     if isinstance(value, dict) and value:
         for key, inner in value.items():
             yield from _leaves(f"{place}.{key}", inner)
+    elif isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        for i, inner in enumerate(value):
+            yield from _leaves(f"{place}[{i}]", inner)
     else:
         yield place, json.dumps(_whole_as_int(value), sort_keys=True, ensure_ascii=False)
 

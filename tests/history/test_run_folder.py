@@ -1,16 +1,18 @@
 """Tests for run_folder.py."""
 
 import csv
+import json
 import logging
+from dataclasses import replace
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hypermap_lite.errors import RunFolderError
-from hypermap_lite.history.lock import FolderLock
-from hypermap_lite.history.run_folder import set_aside
-from tests.history.examples import evaluation, folder, replicate
+from hypermap_lite.evaluation.outcome import Outcome, State
+from hypermap_lite.history.run_folder import RunFolder
+from tests.history.examples import OBJECTIVES, SPACE, evaluation, folder, replicate
 
 
 def rows_of(path):
@@ -144,19 +146,92 @@ def test_torn_line_is_reported_and_cut_off(tmp_path, caplog):
     assert "the last line was cut off" in (tmp_path / "run.log").read_text()
 
 
-def test_old_folder_is_kept_under_another_name(tmp_path):
-    for _ in range(2):
-        with folder(tmp_path / "run") as run:
-            run.append_evaluation(evaluation(0))
-        set_aside(tmp_path / "run")
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["run.bak-1", "run.bak-2"]
-    assert (tmp_path / "run.bak-2" / "history.csv").exists()
+def test_blank_lines_at_the_end_are_no_rows(tmp_path, caplog):
+    with folder(tmp_path) as run:
+        run.append_replicate(replicate(0))
+        run.append_evaluation(evaluation(0))
+    for name in ("history.csv", "evaluations.csv"):
+        with (tmp_path / name).open("a") as file:
+            file.write("\n \r\n\n")
+    with caplog.at_level(logging.WARNING), folder(tmp_path) as run:
+        run.append_replicate(replicate(1))
+        run.append_evaluation(evaluation(1))
+    assert caplog.text == ""
+    with folder(tmp_path) as run:
+        assert (len(run.evaluations), len(run.replicates)) == (2, 2)
 
 
-def test_nothing_is_set_aside_where_there_is_nothing(tmp_path):
-    assert set_aside(tmp_path / "run") is None
+@pytest.mark.parametrize("damage", ["deleted", "cut"])
+def test_missing_calls_of_finished_trials_are_warned_of(tmp_path, caplog, damage):
+    with folder(tmp_path) as run:
+        for trial in range(3):
+            run.append_replicate(replicate(trial))
+            run.append_evaluation(evaluation(trial))
+    lines = run.evaluations_path.read_text().splitlines(keepends=True)
+    run.evaluations_path.write_text("".join(lines[:2])) if damage == "cut" else run.evaluations_path.unlink()
+    with caplog.at_level(logging.WARNING), folder(tmp_path):
+        pass
+    n, first = (2, 1) if damage == "cut" else (3, 0)
+    assert f"evaluations.csv: calls of {n} finished trials are missing, the first of trial {first}" in caplog.text
+    assert "are missing" in (tmp_path / "run.log").read_text()
 
 
-def test_folder_in_use_is_not_set_aside(tmp_path):
-    with FolderLock(tmp_path / "run"), pytest.raises(RunFolderError, match="another process"):
-        set_aside(tmp_path / "run")
+def test_record_of_the_scenario_is_written_only_when_the_rows_fit_it(tmp_path):
+    with folder(tmp_path) as run:
+        run.append_evaluation(evaluation(0))
+        before = run.scenario_path.read_text()
+    (tmp_path / "history.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(RunFolderError, match="columns are not those"), folder(tmp_path, description="other"):
+        pass
+    assert (tmp_path / "scenario.json").read_text() == before
+
+
+def test_function_that_was_passed_is_recorded_and_another_is_warned_of(tmp_path, caplog):
+    def opened(function):
+        return RunFolder(tmp_path, space=SPACE, objectives=OBJECTIVES, canonical={"seed": 1}, function=function)
+
+    with opened("robot.push") as run:
+        assert json.loads(run.scenario_path.read_text())["versions"]["function"] == "robot.push"
+    with caplog.at_level(logging.WARNING):
+        with opened("robot.push"):
+            assert caplog.text == ""
+        with opened("robot.pull"):
+            assert "the function called was robot.push when this run began and is robot.pull now" in caplog.text
+        with opened(None):
+            assert "was robot.pull when this run began and is the scenario's own evaluator now" in caplog.text
+        with opened("robot.push"):
+            assert "was the scenario's own evaluator when this run began and is robot.push now" in caplog.text
+
+
+def failed(call):
+    return replace(call, outcome=Outcome(state=State.TIMEOUT, error="too slow"))
+
+
+def test_failures_at_the_end_are_set_aside_with_their_calls(tmp_path):
+    with folder(tmp_path) as run:
+        for trial, reward in enumerate([None, 1.0, None, None]):
+            run.append_replicate(failed(replicate(trial)) if reward is None else replicate(trial))
+            run.append_evaluation(evaluation(trial, reward))
+        run.append_replicate(failed(replicate(4)))
+        run.append_replicate(replicate(4, 1))
+        before = run.history_path.read_text(), run.evaluations_path.read_text()
+        assert run.set_failures_aside() == 2
+        assert [e.trial for e in run.evaluations] == [0, 1]
+        assert run.set_failures_aside() == 0
+    with folder(tmp_path) as run:
+        assert [e.trial for e in run.evaluations] == [0, 1]
+        assert list(run.replicates) == [(0, 0), (1, 0), (4, 1)]
+    assert (tmp_path / "history.csv.bak-1").read_text() == before[0]
+    assert (tmp_path / "evaluations.csv.bak-1").read_text() == before[1]
+    assert not (tmp_path / "history.csv.bak-2").exists()
+
+
+def test_run_of_failures_alone_starts_from_nothing(tmp_path):
+    with folder(tmp_path) as run:
+        run.append_replicate(failed(replicate(0)))
+        run.append_evaluation(evaluation(0, None))
+        assert run.set_failures_aside() == 1
+        run.append_replicate(replicate(0))
+        run.append_evaluation(evaluation(0))
+    with folder(tmp_path) as run:
+        assert [e.is_completed for e in run.evaluations] == [True]

@@ -14,7 +14,9 @@ SCENARIO = {
     "input_parameters": {"x": {"parameter_type": "real", "values": (0, 1.0)}},
     "budget": {"evaluations": 9, "batch_size": 1, "minutes": None},
     "evaluator": {"type": "command", "workers": 1, "timeout_seconds": None},
+    "objectives": [{"name": "f", "description": ""}, {"name": "g", "reference_point": 1}],
     "output": {"directory": "outputs/a"},
+    "application_name": "demo",
     "description": "",
 }
 
@@ -43,11 +45,14 @@ def test_absent_record_passes(tmp_path):
     "scenario",
     [
         changed("budget", evaluations=50, minutes=3.0),
-        changed("evaluator", workers=4, timeout_seconds=2.5),
+        changed("evaluator", workers=4, timeout_seconds=2.5, max_consecutive_failures=50),
         changed("output", directory="elsewhere"),
         {**SCENARIO, "description": "Now with a word of explanation."},
+        {**SCENARIO, "application_name": "other"},
+        {**SCENARIO, "objectives": [{"name": "f", "description": "in mm"}, {"name": "g", "reference_point": 1}]},
+        changed("input_parameters", x={**SCENARIO["input_parameters"]["x"], "description": "in N"}),
     ],
-    ids=["budget", "evaluator", "output", "description"],
+    ids=["budget", "evaluator", "output", "description", "name", "of an objective", "of a parameter"],
 )
 def test_change_that_leaves_the_rows_valid_passes(tmp_path, scenario):
     write_scenario(tmp_path / "scenario.json", SCENARIO)
@@ -84,3 +89,28 @@ def test_damaged_record_is_an_error(tmp_path, content, message):
     (tmp_path / "scenario.json").write_text(content)
     with pytest.raises(RunFolderError, match=message):
         check_scenario(tmp_path / "scenario.json", SCENARIO)
+
+
+def test_difference_in_a_list_of_objects_is_named_by_its_own_place():
+    other = {**SCENARIO, "objectives": [SCENARIO["objectives"][0], {"name": "g", "reference_point": 2}]}
+    assert list(differing(SCENARIO, other)) == [("$.objectives[1].reference_point", "1", "2")]
+
+
+def test_parameter_called_description_is_no_description():
+    def prior(mean):
+        return {"priors": [{"components": [{"mean": {"description": mean}}]}]}
+
+    ((place, *_),) = differing(prior(1), prior(2))
+    assert place == "$.priors[0].components[0].mean.description"
+
+
+def test_order_of_the_parameters_is_compared():
+    x, y = {"values": [0, 1]}, {"values": [0, 2]}
+    ((place, old, new),) = differing({"input_parameters": {"x": x, "y": y}}, {"input_parameters": {"y": y, "x": x}})
+    assert (place, old, new) == ("$.input_parameters", 'the order ["x", "y"]', '["y", "x"]')
+
+
+def test_record_without_versions_is_fine(tmp_path, caplog):
+    (tmp_path / "scenario.json").write_text(json.dumps({**SCENARIO, "versions": None}))
+    check_scenario(tmp_path / "scenario.json", SCENARIO)
+    assert caplog.text == ""
