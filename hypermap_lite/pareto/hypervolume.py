@@ -29,7 +29,7 @@ def hypervolume(Y: FloatArray, reference_point: FloatArray) -> float:
     Returns
     -------
     float
-        Dominated volume, in the product of the objectives' units; 0.0 for an empty set.
+        Dominated volume, in the product of the objectives' units; 0.0 for an empty set, inf if beyond all floats.
 
     Raises
     ------
@@ -101,7 +101,8 @@ def infer_reference_point(Y: FloatArray) -> FloatArray:
     Returns
     -------
     FloatArray
-        Reference point, shape (m,), strictly worse than each point of the front in each objective.
+        Reference point, shape (m,), strictly worse than each point of the front in each objective (but for the
+        largest float).
 
     Raises
     ------
@@ -124,10 +125,14 @@ def infer_reference_point(Y: FloatArray) -> FloatArray:
         raise ValueError("Expected `Y` to have at least one row of finite values to infer a reference point from")
     front = Y[non_dominated(Y)]
     nadir = front.max(axis=0)
-    step = REFERENCE_MARGIN * (nadir - front.min(axis=0))
-    step = np.where(step > 0, step, REFERENCE_MARGIN * np.abs(nadir))
-    step = np.where(step > 0, step, REFERENCE_MARGIN)
-    return np.maximum(nadir + step, np.nextafter(nadir, np.inf))  # strictly worse even if the step is lost in rounding
+    with np.errstate(over="ignore"):  # a range beyond all floats is measured in parts, the point stays a float
+        span = nadir - front.min(axis=0)
+        parts = REFERENCE_MARGIN * nadir - REFERENCE_MARGIN * front.min(axis=0)
+        step = np.where(np.isfinite(span), REFERENCE_MARGIN * span, parts)
+        step = np.where(step > 0, step, REFERENCE_MARGIN * np.abs(nadir))
+        step = np.where(step > 0, step, REFERENCE_MARGIN)
+        corner = np.maximum(nadir + step, np.nextafter(nadir, np.inf))  # worse even if the step is lost in rounding
+    return np.minimum(corner, np.finfo(float).max)
 
 
 def _check_reference_point(reference_point: FloatArray, m: int) -> FloatArray:

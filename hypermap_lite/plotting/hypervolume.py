@@ -13,7 +13,7 @@ from hypermap_lite.objectives import to_minimization
 from hypermap_lite.pareto import hypervolume_trace
 from hypermap_lite.plotting import style, traces
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
-from hypermap_lite.plotting.runs import Run, by_label, load_runs
+from hypermap_lite.plotting.runs import Run, by_label, load_runs, require_drawable
 from hypermap_lite.typing import FloatArray
 
 logger = logging.getLogger(__name__)
@@ -34,12 +34,15 @@ def plot_hypervolume(
     standard error, up to the end of the shortest. Failed evaluations leave the hypervolume as it was.
     """
     runs = load_runs(folders, labels)
+    require_drawable(runs)
     if len(runs[0].objectives) < 2:
         raise UsageError("`plot hypervolume` needs at least 2 objectives, this scenario has 1: try `plot objectives`")
     reference = common_reference_point(runs, reference_point)
     if reference.is_inferred:
         logger.warning("%s; set `reference_point` in the scenario to compare with other pictures", reference)
     volumes = run_traces(runs, reference)
+    if not all(np.isfinite(trace).all() for group in volumes.values() for trace in group):
+        raise UsageError("the hypervolume is beyond all floats: give objectives or reference point another unit")
     target = style.output_path(output, runs, "hypervolume")
     with style.house_style():
         figure = style.new_figure(7.2, 5.0)

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from hypermap_lite.objectives import Goal
 from hypermap_lite.plotting import style, traces
-from hypermap_lite.plotting.runs import Run, by_label, load_runs
+from hypermap_lite.plotting.runs import Run, by_label, load_runs, require_drawable
 from hypermap_lite.typing import FloatArray
 
 STATE_MARKS: Final[Mapping[str, str]] = {"failed": "x", "timeout": "1", "infeasible": "_"}
@@ -35,6 +35,7 @@ def plot_objectives(
     standard error. Evaluations without values are marked at the bottom. `reference_point` has no part here.
     """
     runs = load_runs(folders, labels)
+    require_drawable(runs)
     target = style.output_path(output, runs, "objectives")
     n_objectives = len(runs[0].objectives)
     with style.house_style():

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from hypermap_lite.errors import UsageError
 from hypermap_lite.plotting import style
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
-from hypermap_lite.plotting.runs import Run, by_label, legend_labels, load_runs
+from hypermap_lite.plotting.runs import Run, by_label, legend_labels, load_runs, require_drawable
 from hypermap_lite.typing import BoolArray, FloatArray
 
 MAX_OBJECTIVES: Final = 5
@@ -52,6 +52,7 @@ def plot_pareto(
     objectives has a panel. Error bars are one standard error over the replicates.
     """
     runs = load_runs(folders, labels)
+    require_drawable(runs)
     n_objectives = len(runs[0].objectives)
     if not 2 <= n_objectives <= MAX_OBJECTIVES:
         raise UsageError(

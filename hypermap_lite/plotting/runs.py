@@ -23,6 +23,9 @@ from hypermap_lite.typing import BoolArray, FloatArray
 DESIGN_PHASES: Final = ("default", "design")
 """Phases of ``history.csv`` that come before there is a model."""
 
+LARGEST_DRAWN: Final = 1e300
+"""Size of the largest values in a picture; its axes are longer than the range of the values."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Run:
@@ -105,7 +108,7 @@ def load_run(source: str | Path, *, label: str = "") -> Run:
         If a file is missing, cannot be read, or does not fit the scenario.
     """
     path = Path(source)
-    history_file = path if path.suffix == ".csv" else path / "history.csv"
+    history_file = path if path.suffix == ".csv" and not path.is_dir() else path / "history.csv"
     folder = history_file.parent
     scenario = _read_scenario(folder / "scenario.json")
     objectives = _objectives_of(scenario, folder / "scenario.json")
@@ -158,6 +161,14 @@ def load_runs(sources: Sequence[str | Path], labels: Sequence[str] | None = None
         _require_completed(run)
         _require_same_objectives(runs[0], run)
     return [replace(run, label=name) for run, name in zip(runs, names, strict=True)]
+
+
+def require_drawable(runs: Sequence[Run]) -> None:
+    """Raise UsageError if values are so large that no axis can be drawn around them."""
+    for run in runs:
+        largest = float(np.nanmax(np.abs(run.values)))
+        if largest > LARGEST_DRAWN:
+            raise UsageError(f"{run.folder}: objective values up to {largest:g} in size cannot be drawn")
 
 
 def by_label(runs: Sequence[Run]) -> dict[str, list[Run]]:

@@ -136,3 +136,14 @@ def test_each_point_of_the_front_lies_inside_the_inferred_box(Y):
 def test_no_finite_row_to_infer_from_is_an_error():
     with pytest.raises(ValueError, match="at least one row of finite values"):
         infer_reference_point(np.array([[np.nan, 1.0]]))
+
+
+def test_reference_point_of_the_largest_floats_is_finite():
+    Y = np.array([[1e308, -1e308], [-1e308, 1e308]])
+    np.testing.assert_allclose(infer_reference_point(Y), [1.2e308, 1.2e308])
+    largest = np.finfo(float).max
+    np.testing.assert_array_equal(infer_reference_point(np.array([[largest, 0.0], [0.0, largest]])), [largest, largest])
+
+
+def test_volume_beyond_all_floats_is_infinite():
+    assert hypervolume(np.array([[-1e308, -1e308]]), np.array([1.0, 1.0])) == np.inf

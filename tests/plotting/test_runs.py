@@ -7,6 +7,7 @@ import pytest
 
 from hypermap_lite.errors import RunFolderError, UsageError
 from hypermap_lite.objectives import Goal
+from hypermap_lite.plotting import plot_function
 from hypermap_lite.plotting.runs import by_label, legend_labels, load_run, load_runs
 from tests.plotting.run_folders import TWO_MAXIMIZED, write_run
 
@@ -45,6 +46,24 @@ def test_run_tells_design_state_and_front_of_each_row(folder):
 
 def test_history_file_stands_for_its_folder(folder):
     assert load_run(folder / "history.csv").folder == folder
+
+
+def test_folder_may_be_called_like_a_table(tmp_path):
+    folder = write_run(tmp_path / "a.csv", [[1.0, 1.0]])
+    assert load_run(folder).folder == folder
+
+
+@pytest.mark.parametrize("kind", ["pareto", "objectives", "hypervolume"])
+def test_values_that_no_axis_holds_are_refused(tmp_path, kind):
+    folder = write_run(tmp_path, [[1e308, -1e308], [-1e308, 1e308]])
+    with pytest.raises(UsageError, match=r"values up to 1e\+308 in size cannot be drawn"):
+        plot_function(kind)([folder])
+
+
+def test_hypervolume_beyond_all_floats_is_refused(tmp_path):
+    folder = write_run(tmp_path, [[1e200, -1e200], [-1e200, 1e200]])
+    with pytest.raises(UsageError, match="beyond all floats"):
+        plot_function("hypervolume")([folder])
 
 
 def test_row_that_is_not_completed_has_no_values_even_if_the_file_has_numbers(tmp_path):
