@@ -47,7 +47,7 @@ class Result:
     """The best one of a single objective, the first of equals; None for several objectives."""
 
     hypervolume: float | None
-    """Volume between front and reference point; None for a single objective or without a front."""
+    """Volume between front and reference point; None for a single objective, without a front or beyond all floats."""
 
     reference_point: Mapping[str, float] | None
     """Corner the hypervolume is measured from: the scenario's, or inferred where an objective has none."""
@@ -63,6 +63,7 @@ def optimize(
     workers: int | None = None,
     output_directory: str | Path | None = None,
     overrides: Sequence[str] = (),
+    retry_failed: bool = False,
 ) -> Result:
     """Run a scenario, or go on with it where it stopped.
 
@@ -80,6 +81,9 @@ def optimize(
         Run folder, instead of the scenario's.
     overrides
         Other changes, as in ``budget.evaluations=30``.
+    retry_failed
+        Whether the failures at the end of an earlier session are evaluated again, with the same seeds, instead of
+        counting towards the budget.
 
     Returns
     -------
@@ -107,7 +111,7 @@ def optimize(
         changes.append(f"evaluator.workers={workers}")
     if output_directory is not None:
         changes.append(f"output.directory={json.dumps(str(output_directory))}")
-    return run_scenario(load_scenario(scenario, overrides=changes), function)
+    return run_scenario(load_scenario(scenario, overrides=changes), function, retry_failed=retry_failed)
 
 
 def run_scenario(
@@ -116,6 +120,8 @@ def run_scenario(
     *,
     observer: RunObserver | None = None,
     should_stop: Callable[[], bool] = lambda: False,
+    on_built: Callable[[], None] = lambda: None,
+    retry_failed: bool = False,
 ) -> Result:
     """Run a loaded scenario; see `optimize`.
 
@@ -125,6 +131,8 @@ def run_scenario(
         Gets word of each step.
     should_stop
         Asked before every call of the black box; once true, the run ends in order.
+    on_built
+        Called when all parts of the scenario have been made, before the run folder is opened.
     """
     evaluator, optimizer = _build(scenario, function)
     spec = scenario.evaluator
@@ -133,9 +141,13 @@ def run_scenario(
         space=optimizer.history.space,
         objectives=scenario.objectives,
         canonical=scenario.canonical,
+        function=None if function is None else name_of(function),
     )
     executor = _executor(evaluator, spec, is_given=function is not None)
+    on_built()
     with folder, closing(executor):  # workers end before the lock is released
+        if retry_failed:
+            folder.set_failures_aside()
         runner = Runner(
             optimizer=optimizer,
             evaluator=evaluator,
@@ -159,6 +171,12 @@ def _build(scenario: Scenario, function: Callable[..., Any] | None) -> tuple[Eva
         raise error.within(scenario.origin_of(error.path)) from error
 
 
+def name_of(function: Callable[..., Any]) -> str:
+    """Return module and name of a function, or of the class of another callable object."""
+    named = function if hasattr(function, "__qualname__") else type(function)
+    return f"{named.__module__}.{named.__qualname__}"
+
+
 def _executor(evaluator: Evaluator, spec: EvaluatorSpec, *, is_given: bool) -> Executor:
     """Choose where calls happen.
 
@@ -178,11 +196,12 @@ def result_of(folder: RunFolder, reason: StopReason) -> Result:
     points: tuple[Point, ...] = tuple((e.configuration, e.values) for e in front)
     Y = np.array([values_of(objectives, e.values) for e in front])
     corner = _reference_point(objectives, Y) if len(objectives) > 1 and front else None
+    volume = np.inf if corner is None else hypervolume(Y, corner)
     return Result(
         evaluations=tuple(folder.evaluations),
         pareto_front=points,
         best=points[0] if len(objectives) == 1 and points else None,
-        hypervolume=None if corner is None else hypervolume(Y, corner),
+        hypervolume=volume if np.isfinite(volume) else None,
         reference_point=None
         if corner is None
         else {o.name: o.sign * float(c) for o, c in zip(objectives, corner, strict=True)},

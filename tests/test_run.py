@@ -1,6 +1,7 @@
 """Tests for run.py: `optimize`, from Python."""
 
 import csv
+import functools
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ from hypermap_lite import optimize
 from hypermap_lite.errors import RunFolderError, ScenarioError, UsageError
 from hypermap_lite.evaluation.runner import StopReason
 from hypermap_lite.history.lock import FolderLock
+from hypermap_lite.run import name_of
 from tests.evaluation.black_boxes import sphere
 
 SCENARIO = {
@@ -37,6 +39,43 @@ def test_result_holds_evaluations_front_and_hypervolume(tmp_path):
     assert result.hypervolume > 0
     assert result.reference_point["f"] == 5
     assert (result.run_folder, result.stop_reason) == (tmp_path, StopReason.BUDGET)
+
+
+def test_values_beyond_the_square_root_of_floats_have_a_front_and_no_hypervolume(tmp_path):
+    sides = SCENARIO | {"objectives": [{"name": "f"}, {"name": "g"}]}
+    result = optimize(sides, lambda c: (c["x"] * 0.8e308, -c["x"] * 0.8e308), output_directory=tmp_path)
+    assert len(result.pareto_front) == 6
+    assert result.hypervolume is None
+
+
+def test_another_function_for_the_same_folder_is_warned_of(tmp_path, caplog):
+    def other(configuration):
+        return two(configuration)
+
+    optimize(SCENARIO, two, output_directory=tmp_path)
+    optimize(SCENARIO, two, output_directory=tmp_path)
+    assert "the function called" not in caplog.text
+    optimize(SCENARIO, other, output_directory=tmp_path)
+    assert "the function called was tests.test_run.two when this run began and is tests.test_run.test_" in caplog.text
+
+
+def test_callable_object_is_called_by_its_class():
+    assert name_of(functools.partial(two)) == "functools.partial"
+    assert name_of(two) == "tests.test_run.two"
+
+
+def test_failures_at_the_end_are_tried_again_on_demand(tmp_path):
+    def broken(configuration, trial):
+        return two(configuration) if trial < 3 else {}
+
+    def mended(configuration, trial):
+        return two(configuration)
+
+    before = optimize(SCENARIO, broken, output_directory=tmp_path)
+    after = optimize(SCENARIO, mended, output_directory=tmp_path, retry_failed=True)
+    assert [e.is_completed for e in before.evaluations] == [True] * 3 + [False] * 3
+    assert [e.configuration for e in after.evaluations] == [e.configuration for e in before.evaluations]
+    assert all(e.is_completed for e in after.evaluations)
 
 
 def test_best_of_one_objective_follows_its_direction(tmp_path):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from hypermap_lite.cli.plot import add_reference_point_option, parse_reference_point
+from hypermap_lite.errors import RunFolderError
 
 if TYPE_CHECKING:
     from hypermap_lite.plotting.runs import Run
@@ -19,7 +21,8 @@ examples:
   python -m hypermap_lite pareto outputs/branin
   python -m hypermap_lite pareto outputs/branin --csv > front.csv
 
-The front is also written to pareto.csv in the run folder. As CSV it goes to stdout and the hypervolume to stderr.
+The front is also written to pareto.csv in the run folder, if that can be written. As CSV it goes to stdout and the
+hypervolume to stderr.
 """
 
 
@@ -39,20 +42,23 @@ def add_parser(subparsers: Subparsers) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write ``pareto.csv`` and print the front and its hypervolume."""
+    """Print the front and its hypervolume, and write ``pareto.csv`` where the folder can be written."""
     from hypermap_lite.history.files import write_atomically
     from hypermap_lite.plotting.runs import load_runs
 
     (run,) = load_runs([args.run])
     summary = describe_front(run, parse_reference_point(args.reference_point))
     text = front_as_csv(run)
-    write_atomically(run.folder / "pareto.csv", text)
     if args.csv or not sys.stdout.isatty():
         print(text, end="")
         print(summary, file=sys.stderr)
     else:
         print(front_as_table(run))
         print(summary)
+    try:
+        write_atomically(run.folder / "pareto.csv", text)
+    except RunFolderError as error:
+        print(f"note: {str(error).splitlines()[0]}", file=sys.stderr)
     return 0
 
 
@@ -93,7 +99,8 @@ def describe_front(run: Run, reference_point: Mapping[str, float] | None = None)
         return size
     reference = common_reference_point([run], reference_point)
     volume = hypervolume(run.Y, to_minimization(run.objectives, reference.values))
-    return f"{size}; hypervolume {volume:.6g} ({reference})"
+    measured = f"hypervolume {volume:.6g}" if math.isfinite(volume) else "hypervolume not available: beyond all floats"
+    return f"{size}; {measured} ({reference})"
 
 
 def _front_rows(run: Run) -> list[Mapping[str, str]]:

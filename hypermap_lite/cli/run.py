@@ -7,12 +7,15 @@ import shlex
 import sys
 from argparse import Namespace, RawDescriptionHelpFormatter
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from hypermap_lite.errors import HypermapLiteError
+
 if TYPE_CHECKING:
     from argparse import ArgumentParser, _SubParsersAction
-    from collections.abc import Sequence
 
     from hypermap_lite.run import Result
     from hypermap_lite.scenario.model import Scenario
@@ -48,8 +51,14 @@ def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> None:
         metavar="KEY.PATH=VALUE",
         help="change one value, as in budget.evaluations=30; may be repeated",
     )
-    parser.add_argument(
+    begin = parser.add_mutually_exclusive_group()
+    begin.add_argument(
         "--fresh", action="store_true", help="start anew; an existing run folder is renamed to DIR.bak-N, never deleted"
+    )
+    begin.add_argument(
+        "--retry-failed",
+        action="store_true",
+        help="evaluate the failures at the end of the last session again; its files are kept as *.bak-N",
     )
     parser.add_argument("--no-plot", action="store_true", help="draw no picture at the end")
     parser.set_defaults(execute=execute)
@@ -70,16 +79,27 @@ def execute(args: Namespace) -> int:
     from hypermap_lite.scenario import load_scenario
 
     scenario = load_scenario(args.scenario, overrides=overrides_of(args))
-    if args.fresh:
-        _set_aside(Path(scenario.output.directory))
     try:
         with StopSignals() as signals, progress(is_quiet=args.quiet, is_verbose=args.verbose) as observer:
-            result = run_scenario(scenario, observer=observer, should_stop=lambda: signals.is_requested)
+            result = run_scenario(
+                scenario,
+                observer=observer,
+                should_stop=lambda: signals.is_requested,
+                on_built=lambda: _set_aside(scenario) if args.fresh else None,
+                retry_failed=args.retry_failed,
+            )
     except StoppedAtOnce as stop:
         return _say_how_to_go_on(scenario, args, stop.exit_status)
     if result.stop_reason is StopReason.INTERRUPTED:
         return _say_how_to_go_on(scenario, args, 130)
-    _print_result(scenario, result, has_picture=not args.no_plot)
+    print(f"{scenario.application_name}: {count_states(result)}; the run ended because {result.stop_reason.value}\n")
+    with _only_a_note("summary"):
+        _print_front(result)
+    for name in ("history.csv", "pareto.csv"):
+        print(_short(result.run_folder) / name)
+    if not args.no_plot:
+        with _only_a_note("picture"):
+            _draw(result)
     return 0
 
 
@@ -101,10 +121,12 @@ def command_to_go_on(args: Namespace) -> str:
     return shlex.join(words)
 
 
-def _set_aside(folder: Path) -> None:
-    from hypermap_lite.history.run_folder import set_aside
+def _set_aside(scenario: Scenario) -> None:
+    from hypermap_lite.history.backups import set_aside
 
-    kept = set_aside(folder)
+    # A scenario of one's own stays where it is; one that is the record of the run goes with it.
+    written = [layer.directory for layer in scenario.layers if layer.directory and "versions" not in layer.document]
+    kept = set_aside(scenario.output.directory, needed=written)
     if kept is not None:
         print(f"note: the former run folder is now {kept}", file=sys.stderr)
 
@@ -118,19 +140,25 @@ def _say_how_to_go_on(scenario: Scenario, args: Namespace, exit_status: int) -> 
     return exit_status
 
 
-def _print_result(scenario: Scenario, result: Result, *, has_picture: bool) -> None:
+@contextmanager
+def _only_a_note(what: str) -> Iterator[None]:
+    """Report any failure in a note: the run is finished, and what comes after it must not look like its failure."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except Exception as error:
+        text = str(error) if isinstance(error, HypermapLiteError) else f"{type(error).__name__}: {error}"
+        print(f"note: no {what}: {text}", file=sys.stderr)
+
+
+def _print_front(result: Result) -> None:
     from hypermap_lite.cli.pareto import describe_front, front_as_table
     from hypermap_lite.plotting.runs import load_runs
 
     (run,) = load_runs([result.run_folder])
-    folder = _short(result.run_folder)
-    print(f"{scenario.application_name}: {count_states(result)}; the run ended because {result.stop_reason.value}\n")
     print(front_as_table(run))
     print(f"\n{describe_front(run)}")
-    for name in ("history.csv", "pareto.csv"):
-        print(folder / name)
-    for picture in _draw(result) if has_picture else ():
-        print(_short(picture))
 
 
 def count_states(result: Result) -> str:
@@ -140,17 +168,13 @@ def count_states(result: Result) -> str:
     return f"{len(result.evaluations)} evaluation{'s' * (len(result.evaluations) != 1)}: {parts}"
 
 
-def _draw(result: Result) -> Sequence[Path]:
-    """Draw the front (one objective: its course) into the run folder; what keeps us from it is only a note."""
-    from hypermap_lite.errors import UsageError
+def _draw(result: Result) -> None:
+    """Draw the front (one objective: its course) into the run folder, and list the files."""
     from hypermap_lite.plotting import plot_function
 
     kind = "objectives" if result.best is not None else "pareto"
-    try:
-        return plot_function(kind)([result.run_folder], result.run_folder / kind)
-    except UsageError as error:
-        print(f"note: no picture: {error}", file=sys.stderr)
-        return ()
+    for picture in plot_function(kind)([result.run_folder], result.run_folder / kind):
+        print(_short(picture))
 
 
 def _short(path: Path) -> Path:

@@ -32,6 +32,17 @@ def crash(configuration):
     raise RuntimeError("no such luck")
 
 
+def crash_unless_mended(configuration, seed):
+    if not (HERE / "mended").exists():
+        raise RuntimeError("broken")
+    return {"f": configuration["x"] + seed * 1e-12, "g": -configuration["x"]}
+
+
+def huge(configuration):
+    x = configuration["x"] * 0.8e308
+    return {"f": x, "g": -x}
+
+
 def crash_first(configuration, trial):
     if trial == 0:
         raise RuntimeError("cold start")

@@ -62,6 +62,17 @@ def test_one_objective_has_its_best_rows_and_no_hypervolume(tmp_path):
     assert pareto.front_as_table(run).splitlines()[1].split() == ["1", "1", "0.1"]
 
 
+def test_front_of_a_folder_that_cannot_be_written_is_printed_all_the_same(folder, capsys, monkeypatch):
+    def refuse(path, _):
+        raise RunFolderError(f"{path}: cannot be written: Permission denied\n  hint: Choose another.")
+
+    monkeypatch.setattr("hypermap_lite.history.files.write_atomically", refuse)
+    assert run_command(folder, "--csv") == 0
+    out, err = capsys.readouterr()
+    assert len(out.splitlines()) == 3
+    assert err.splitlines()[1:] == [f"note: {folder}/pareto.csv: cannot be written: Permission denied"]
+
+
 def test_values_that_are_words_stay_as_they_are(folder):
     file = folder / "history.csv"
     file.write_text(file.read_text().replace("\n0.0,", "\nspiral,", 1))

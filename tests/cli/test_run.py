@@ -96,6 +96,105 @@ def test_fresh_start_keeps_the_old_folder_aside(tmp_path, capsys):
     assert "is now" in capsys.readouterr().err
 
 
+def test_fresh_start_keeps_the_old_folder_in_place_when_the_scenario_cannot_be_run(tmp_path, capsys):
+    assert run(write_scenario(tmp_path, budget={"evaluations": 2})) == 0
+    assert run(write_scenario(tmp_path, evaluator={"type": "python", "function": "nowhere:f"}), "--fresh") == 2
+    assert (tmp_path / "run" / "history.csv").exists()
+    assert not (tmp_path / "run.bak-1").exists()
+
+
+def test_fresh_start_leaves_what_is_no_run_folder_alone(tmp_path, capsys):
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis" / "chapter.tex").write_text("")
+    assert run(write_scenario(tmp_path), "--fresh", "--output-dir", str(tmp_path / "thesis")) == 2
+    assert "is not a run folder" in capsys.readouterr().err
+
+
+def test_fresh_start_leaves_the_working_folder_and_that_of_the_scenario_alone(tmp_path, capsys, monkeypatch):
+    path = write_scenario(tmp_path)
+    assert run(path, "--fresh", "--output-dir", str(tmp_path)) == 2
+    monkeypatch.chdir(tmp_path)
+    assert run(path, "--fresh", "--output-dir", ".") == 2
+    assert capsys.readouterr().err.count("cannot be set aside") == 2
+    assert path.exists()
+
+
+def test_fresh_start_takes_the_record_of_the_run_for_its_scenario(tmp_path):
+    path = write_scenario(tmp_path, budget={"evaluations": 2})
+    assert run(path) == 0
+    assert run(tmp_path / "run" / "scenario.json", "--fresh") == 0
+    assert (tmp_path / "run.bak-1" / "history.csv").exists()
+
+
+@pytest.mark.parametrize("budgets", [(4, 9), (9, 7)], ids=["raised", "lowered"])
+def test_budget_may_change_across_the_size_of_the_derived_design(tmp_path, budgets):
+    path = write_scenario(tmp_path, design_of_experiment={"number_of_samples": None})
+    for n in budgets:
+        assert run(path, "--set", f"budget.evaluations={n}") == 0
+    assert run(path, "--set", "budget.evaluations=3") == 0
+    rows = history(tmp_path / "run")
+    assert [row["phase"] for row in rows] == ["design"] * 6 + ["random"] * (max(budgets) - 6)
+
+
+def test_hints_of_a_run_that_keeps_failing_can_be_followed(tmp_path, capsys):
+    path = write_scenario(tmp_path, function="crash")
+    assert run(path) == 4
+    error = capsys.readouterr().err
+    assert "--retry-failed" in error
+    assert "raise evaluator.max_consecutive_failures" in error
+    assert run(path, "--set", "evaluator.max_consecutive_failures=7") == 4
+    assert len(history(tmp_path / "run")) == 7
+
+
+def test_failed_trials_are_tried_again_with_the_same_seeds(tmp_path, capsys):
+    path = write_scenario(tmp_path, function="crash_unless_mended", evaluator={"replicates": 2})
+    assert run(path) == 4
+    before = calls(tmp_path / "run")
+    (tmp_path / "mended").write_text("")
+    assert run(path, "--retry-failed") == 0
+    assert "8 evaluations: 8 completed" in capsys.readouterr().out
+    after = calls(tmp_path / "run")
+    assert [row["seed"] for row in after[: len(before)]] == [row["seed"] for row in before]
+    assert {row["state"] for row in after} == {"completed"}
+    assert len((tmp_path / "run" / "history.csv.bak-1").read_text().splitlines()) == 6
+    fresh = tmp_path / "fresh"
+    assert run(path, "--output-dir", str(fresh)) == 0
+    assert [(row["x"], row["f"]) for row in history(fresh)] == [(r["x"], r["f"]) for r in history(tmp_path / "run")]
+
+
+def calls(folder):
+    with (folder / "evaluations.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_name_that_ends_like_a_table_is_a_folder_all_the_same(tmp_path, capsys):
+    folder = tmp_path / "a.csv"
+    options = ["--output-dir", str(folder), "--set", "budget.evaluations=2", "-q"]
+    assert main([str(write_scenario(tmp_path)), *options]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert str(folder / "pareto.png") in out
+
+
+def test_huge_values_end_with_a_note_and_status_0(tmp_path, capsys):
+    assert main([str(write_scenario(tmp_path, function="huge")), "-q"]) == 0
+    out, err = capsys.readouterr()
+    assert "hypervolume not available" in out
+    assert err.startswith("note: no picture: ")
+
+
+def test_summary_and_picture_that_fail_are_only_notes(tmp_path, capsys, monkeypatch):
+    def fail(*_):
+        raise ZeroDivisionError("oh")
+
+    monkeypatch.setattr("hypermap_lite.cli.run._print_front", fail)
+    monkeypatch.setattr("hypermap_lite.cli.run._draw", fail)
+    assert main([str(write_scenario(tmp_path, budget={"evaluations": 2})), "-q"]) == 0
+    out, err = capsys.readouterr()
+    assert err == "note: no summary: ZeroDivisionError: oh\nnote: no picture: ZeroDivisionError: oh\n"
+    assert "history.csv" in out
+
+
 def test_failing_first_trial_does_not_stop_the_run(tmp_path, capsys):
     assert run(write_scenario(tmp_path, function="crash_first")) == 0
     assert "8 evaluations: 7 completed, 1 failed" in capsys.readouterr().out
@@ -197,3 +296,10 @@ def test_stop_at_once_kills_what_runs_and_keeps_what_is_finished(tmp_path, waiti
     (tmp_path / "go").write_text("")
     assert run(tmp_path / "scenario.json") == 0
     assert len(history(tmp_path / "run")) == 8
+
+
+def test_interrupted_run_ends_with_130_though_nobody_reads_stderr(tmp_path, waiting):
+    waiting.stderr.close()
+    waiting.send_signal(signal.SIGINT)
+    (tmp_path / "go").write_text("")
+    assert waiting.wait(30) == 130
