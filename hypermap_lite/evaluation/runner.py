@@ -207,8 +207,8 @@ class Runner:
             raise RepeatedFailureError(
                 f"the last {self._failures} configurations gave no usable result: {evaluation.error}\n"
                 f"  logs: {self.folder.trial_folder(evaluation.trial)}\n"
-                "  hint: Mend the evaluator and give the same command again, or raise "
-                "evaluator.max_consecutive_failures."
+                "  hint: Mend the evaluator and give the same command again with --retry-failed, which evaluates them "
+                "anew; without it they count. Or raise evaluator.max_consecutive_failures."
             )
 
     def _require_result(self, reason: StopReason) -> None:
