@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shlex
@@ -16,11 +17,9 @@ from typing import Final
 
 from hypermap_lite.errors import EvaluationError, ScenarioError, nearest
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, outcome_of
+from hypermap_lite.evaluation.logs import last_text_line, shorten_logs
 from hypermap_lite.evaluation.outcome import Outcome
 from hypermap_lite.evaluation.placeholders import BUILT_IN, as_argument, fill, placeholders_in, unknown_placeholders
-
-TAIL_BYTES: Final = 1 << 20
-"""How much of a program's output is looked at for its last line [bytes]."""
 
 THREAD_CAPS: Final = "HYPERMAP_THREAD_CAPS"
 """Environment variable that names the thread limits a worker set for itself; programs are started without them."""
@@ -30,8 +29,13 @@ THREAD_CAPS: Final = "HYPERMAP_THREAD_CAPS"
 class Command:
     """Runs a program once per call and reads a JSON object with the objectives.
 
-    The program's output goes to ``replicate_0.stdout.log`` and ``.stderr.log`` in the trial's folder. It is run in
-    the process group of the caller, so a worker that is killed takes it along.
+    The program's output goes to ``replicate_0.stdout.log`` and ``.stderr.log`` in the trial's folder, of which the
+    first and last MiB are kept. The program leads a process group of its own; whatever of that group still runs when
+    the program has ended is killed.
+
+    At the time limit, the program and everything it started get SIGTERM, and SIGKILL if they still run
+    `executors.GRACE_SECONDS` later: time for a robot to stop. Only what asked for a session of its own (``setsid``)
+    goes on. Ctrl-C and a kill of the run are not passed on as a SIGTERM.
 
     Raises
     ------
@@ -93,14 +97,17 @@ class Command:
         prepare_folder(request)
         values = placeholder_values(request)
         arguments = [fill(argument, values, quote=self.shell) for argument in self.command]
-        self._run(" ".join(arguments) if self.shell else arguments, request)
-        return outcome_of(self._read_result(request), self.objectives)
+        try:
+            self._run(" ".join(arguments) if self.shell else arguments, request)
+            return outcome_of(self._read_result(request), self.objectives)
+        finally:
+            shorten_logs(request)
 
     def _run(self, arguments: str | list[str], request: EvaluationRequest) -> None:
         stderr = request.file("stderr.log")
         with request.file("stdout.log").open("wb") as out, stderr.open("wb") as err:
             try:
-                status = subprocess.run(
+                process = subprocess.Popen(
                     arguments,
                     shell=self.shell,
                     cwd=self.working_directory,
@@ -108,12 +115,13 @@ class Command:
                     stdin=subprocess.DEVNULL,
                     stdout=out,
                     stderr=err,
-                    check=False,
-                ).returncode
+                    process_group=0,
+                )
             except (OSError, ValueError) as error:
                 raise EvaluationError(f"the program could not be started: {error}") from error
+        status = wait_and_end_group(process)
         if status:
-            said = last_text_line(stderr)
+            said = _last_words(stderr)
             raise EvaluationError(describe_status(status) + (f": {said}" if said else ""))
 
     def _read_result(self, request: EvaluationRequest) -> Mapping[str, object]:
@@ -122,7 +130,7 @@ class Command:
             text = path.read_text(encoding="utf-8", errors="replace") if path.exists() else ""
         else:
             place, path = "the last line of the output", request.file("stdout.log")
-            text = last_text_line(path)
+            text = self._last_line(path)
         try:
             result = json.loads(text)
         except ValueError:
@@ -130,8 +138,25 @@ class Command:
         if isinstance(result, dict):
             return result
         shown = repr(text[:80]) if text.strip() else "empty"
-        said = last_text_line(request.file("stderr.log"))
+        said = _last_words(request.file("stderr.log"))
         raise EvaluationError(f"{place} is {shown}, not a JSON object" + (f" (stderr: {said})" if said else ""))
+
+    def _last_line(self, path: Path) -> str:
+        try:
+            return last_text_line(path)
+        except ValueError as error:
+            raise EvaluationError(f'{error}: write the result to {{result_file}}, with "result": "file"') from error
+
+
+def wait_and_end_group(process: subprocess.Popen[bytes]) -> int:
+    """Wait for the leader of a process group, kill what is left of the group, and return the leader's status."""
+    try:
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # not reaped, so the group's number is not reused
+    finally:
+        with contextlib.suppress(ProcessLookupError, PermissionError):  # macOS: only the unreaped leader is left
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    return process.returncode
 
 
 def check_program(program: str, working_directory: Path) -> None:
@@ -192,13 +217,11 @@ def environment(request: EvaluationRequest) -> dict[str, str]:
     }
 
 
-def last_text_line(path: Path) -> str:
-    """Return the last line of a file that is not empty, stripped; nothing if there is none."""
-    with path.open("rb") as file:
-        file.seek(0, os.SEEK_END)
-        file.seek(max(0, file.tell() - TAIL_BYTES))
-        lines = file.read().decode("utf-8", errors="replace").splitlines()
-    return next((line.strip() for line in reversed(lines) if line.strip()), "")
+def _last_words(log: Path) -> str:
+    try:
+        return last_text_line(log)
+    except ValueError as error:
+        return f"({error})"
 
 
 def describe_status(status: int) -> str:

@@ -7,7 +7,8 @@ import os
 import re
 import time
 import traceback
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
@@ -67,7 +68,8 @@ def call(
     """
     start = time.perf_counter()
     try:
-        outcome = _call_here_only(evaluator, request)
+        with forked_children_end_here():
+            outcome = evaluator(request)
     except EvaluationError as error:
         outcome = failure(_message(error))
     except caught as error:
@@ -76,11 +78,12 @@ def call(
     return answer(request, outcome, time.perf_counter() - start)
 
 
-def _call_here_only(evaluator: Evaluator, request: EvaluationRequest) -> Outcome:
-    """Call the black box; a process that it forked ends here, however it comes back, and never answers too."""
+@contextmanager
+def forked_children_end_here() -> Iterator[None]:
+    """End a process that foreign code forked where it would leave the context, so that it never answers too."""
     pid = os.getpid()
     try:
-        return evaluator(request)
+        yield
     finally:
         if os.getpid() != pid:
             os._exit(0)
@@ -202,7 +205,7 @@ def failure(reason: str, metrics: Mapping[str, float] | None = None) -> Outcome:
 
 
 def printable(text: str) -> str:
-    """Return text on one line, without colours, and with control characters spelt out, as in ``\\x00``."""
+    """Return text on one line, without colours, and with control characters spelt out (a bell as its code 07)."""
     line = " ".join(_TERMINAL_CODES.sub("", text).split())
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in line)
 

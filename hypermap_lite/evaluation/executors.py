@@ -11,18 +11,32 @@ from typing import Final, Protocol, Self
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.command import describe_status
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator, answer, call, failure
+from hypermap_lite.evaluation.logs import shorten_logs
 from hypermap_lite.evaluation.outcome import Outcome, Replicate, State
 from hypermap_lite.evaluation.worker_process import Worker, pickled
 
 LONGEST_WAIT: Final = 0.5
 """Time between two looks at whether the workers still live [s]; answers and time limits are met at once."""
 
+GRACE_SECONDS: Final = 2.0
+"""Time between SIGTERM and SIGKILL for a call that runs past its time limit [s]."""
+
+GRACE_STEP: Final = 0.02
+"""Time between two looks at a call that was told to stop [s]."""
+
+BURIAL_SECONDS: Final = 1.0
+"""How long a worker whose pipe has closed may take to end, so that it is known how it ended [s]."""
+
 
 class Executor(Protocol):
     """Makes calls, in any order, and hands back each as it finishes."""
 
     def run(self, evaluator: Evaluator, requests: Iterable[EvaluationRequest]) -> Generator[Replicate, None, None]:
-        """Yield the record of each call; a request is taken from the iterable only when it can start at once."""
+        """Yield the record of each call.
+
+        A request is taken from the iterable only when it can start at once, and when whoever iterates has dealt with
+        the record of the call before it in the same place.
+        """
 
     def close(self) -> None:
         """Stop whatever is running and free what is held."""
@@ -43,8 +57,8 @@ class InProcessExecutor:
 class ProcessExecutor:
     """Keeps up to n worker processes, which import the black box once and stay.
 
-    A worker that runs past the time limit is killed with everything it started; one that dies is replaced. Either
-    way its call ends with an outcome that says so.
+    A worker that runs past the time limit gets SIGTERM with everything it started, and SIGKILL if that does not help
+    within `GRACE_SECONDS`; one that dies is replaced. Either way its call ends with an outcome that says so.
 
     Parameters
     ----------
@@ -72,9 +86,8 @@ class ProcessExecutor:
         try:
             self._hand_out(waiting)
             while busy := self._busy():
-                for replicate in self._collect(busy):
-                    self._hand_out(waiting)  # first of all, so that workers do not idle while the row is written
-                    yield replicate
+                yield from self._collect(busy)  # first of all, so that what is finished is written before more begins
+                self._hand_out(waiting)
         finally:
             for worker in self._busy():
                 self._drop(worker)
@@ -124,8 +137,12 @@ class ProcessExecutor:
 
     def _collect(self, busy: list[Worker]) -> Iterator[Replicate]:
         """Wait for something to happen to the busy workers and yield the calls that ended."""
-        wait([worker.answers for worker in busy], timeout=self._patience(busy))
+        wait([worker.answers for worker in busy if worker.told_to_stop is None], timeout=self._patience(busy))
         for worker in busy:
+            if worker.told_to_stop is not None:
+                if worker.is_deserted() or time.perf_counter() - worker.told_to_stop >= GRACE_SECONDS:
+                    yield self._end_overdue(worker)
+                continue
             is_alive = worker.is_alive()  # asked before the pipe, so that a last answer is not missed
             if worker.has_answer():
                 replicate = self._receive(worker)
@@ -134,11 +151,13 @@ class ProcessExecutor:
             elif not is_alive:
                 yield self._bury(worker)
             elif worker.is_overdue(self.timeout_seconds):
-                yield self._end_overdue(worker)
+                worker.terminate()
 
     def _patience(self, busy: list[Worker]) -> float:
         if self.timeout_seconds is None:
             return LONGEST_WAIT
+        if any(worker.told_to_stop is not None for worker in busy):
+            return GRACE_STEP
         starts = [worker.started for worker in busy if worker.started is not None]
         remaining = min(starts, default=time.perf_counter()) + self.timeout_seconds - time.perf_counter()
         return min(max(remaining, 0.0), LONGEST_WAIT)
@@ -160,6 +179,7 @@ class ProcessExecutor:
         assert request is not None
         seconds = time.perf_counter() - (worker.started or time.perf_counter())
         self._drop(worker)
+        shorten_logs(request)
         return request, seconds
 
     def _end_overdue(self, worker: Worker) -> Replicate:
@@ -176,6 +196,7 @@ class ProcessExecutor:
             If it died before it had loaded the evaluator, as every other would.
         """
         was_loaded = worker.started is not None
+        worker.wait(BURIAL_SECONDS)
         request, seconds = self._end(worker)
         reason = f"the worker process ended: {describe_status(worker.process.returncode)}"
         if not was_loaded:

@@ -173,6 +173,8 @@ class Runner:
         self.folder.write_pareto()
         if len(rows) == len(suggestions):
             self.optimizer.tell(rows)
+        elif not self.should_stop():  # asking again would go on for ever
+            raise RuntimeError(f"trial {suggestions[0].trial + len(rows)} was evaluated, but its result did not arrive")
 
     def _missing(self, suggestions: Sequence[Suggestion]) -> Iterator[EvaluationRequest]:
         for suggestion in suggestions:

@@ -1,7 +1,7 @@
 """The program of a worker process: load the black box once, then answer one request after the other.
 
-It ends, with everything it started, when the pipe it gets its requests from closes: that is how it learns that its
-parent has died.
+A guardian beside it kills it, with everything it started, when the pipe it gets its requests from closes, that is, when
+its parent has died: at once, whatever the black box is at.
 """
 
 from __future__ import annotations
@@ -10,20 +10,25 @@ import contextlib
 import faulthandler
 import os
 import pickle
-import signal
 import sys
-import threading
 from collections.abc import Iterator
 from io import TextIOWrapper
 from multiprocessing.connection import Connection
 from pathlib import Path
-from queue import SimpleQueue
+from typing import IO, Any
 
-from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator, call, last_line
-from hypermap_lite.evaluation.outcome import Replicate
+from hypermap_lite.evaluation.evaluator import (
+    EvaluationRequest,
+    Evaluator,
+    call,
+    forked_children_end_here,
+    last_line,
+)
+from hypermap_lite.evaluation.logs import ENDINGS, shorten_logs
+from hypermap_lite.evaluation.sessions import start_guardian
 
 
-def main(requests: int, answers: int) -> None:
+def main(requests: int, answers: int, *kept: int) -> None:
     """Serve requests.
 
     Parameters
@@ -31,45 +36,37 @@ def main(requests: int, answers: int) -> None:
     requests, answers
         File descriptors: messages from the parent (the pickled evaluator, then requests; None for the end) and to
         it (None once the evaluator is loaded, or a text why it is not; then the finished calls).
+    kept
+        Other descriptors to hold until the end.
     """
-    inbox: SimpleQueue[bytes] = SimpleQueue()
-    threading.Thread(target=_receive, args=(Connection(requests, writable=False), inbox), daemon=True).start()
+    for descriptor in (requests, answers, *kept):
+        os.set_inheritable(descriptor, False)  # they are no business of programs that the black box starts
+    start_guardian(requests, answers)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(line_buffering=True, errors="backslashreplace")
     faulthandler.enable()
-    with Connection(answers, readable=False) as outbox:
-        evaluator = _load(inbox.get(), outbox)
-        while evaluator is not None and (request := pickle.loads(inbox.get())) is not None:
-            with captured_output(request):
-                _send(outbox, call(evaluator, request))  # before the logs are tidied: it must reach the disk soon
+    with (
+        Connection(requests, writable=False) as inbox,
+        Connection(answers, readable=False) as outbox,
+        contextlib.suppress(EOFError, BrokenPipeError),  # the parent is gone, and nobody waits for an answer
+    ):
+        _serve(inbox, outbox)
 
 
-def _send(outbox: Connection, replicate: Replicate) -> None:
-    try:
-        outbox.send(replicate)
-    except BrokenPipeError:
-        end_group()
-
-
-def _receive(source: Connection, inbox: SimpleQueue[bytes]) -> None:
-    """Move messages to the inbox; when the parent is gone, kill this process group."""
-    while True:
-        try:
-            inbox.put(source.recv_bytes())
-        except (EOFError, OSError):
-            end_group()
-
-
-def end_group() -> None:
-    """Kill this process and everything it started: the parent is gone, and nobody waits for an answer."""
-    os.killpg(0, signal.SIGKILL)
+def _serve(inbox: Connection, outbox: Connection) -> None:
+    evaluator = _load(inbox.recv_bytes(), outbox)
+    while evaluator is not None and (request := inbox.recv()) is not None:
+        with captured_output(request):
+            # before the logs are tidied: it must reach the disk soon
+            outbox.send(call(evaluator, request, caught=(BaseException,)))
 
 
 def _load(content: bytes, outbox: Connection) -> Evaluator | None:
     try:
-        evaluator: Evaluator = pickle.loads(content)
-    except (Exception, SystemExit) as error:
+        with forked_children_end_here():
+            evaluator: Evaluator = pickle.loads(content)
+    except BaseException as error:
         outbox.send(last_line(error))
         return None
     outbox.send(None)
@@ -78,24 +75,55 @@ def _load(content: bytes, outbox: Connection) -> Evaluator | None:
 
 @contextlib.contextmanager
 def captured_output(request: EvaluationRequest) -> Iterator[None]:
-    """Send what the process and its children print to the trial's log files; empty ones are removed."""
-    logs = [request.file("stdout.log"), request.file("stderr.log")]
+    """Send what the process and its children print to the trial's log files; empty ones are removed.
+
+    Streams that are closed or replaced meanwhile are put back.
+    """
+    logs = [request.file(ending) for ending in ENDINGS]
+    _open_missing()
     try:
         request.directory.mkdir(parents=True, exist_ok=True)
         targets = [os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o644) for log in logs]
     except OSError:  # no place for logs is no reason not to evaluate
-        yield
+        with restored_streams():
+            yield
         return
     saved = [os.dup(descriptor) for descriptor in (1, 2)]
     _redirect(targets)
     try:
+        with restored_streams():
+            yield
+    finally:
+        _redirect(saved)
+        shorten_logs(request)
+        _remove_empty(logs)
+
+
+@contextlib.contextmanager
+def restored_streams() -> Iterator[None]:
+    """Flush stdout and stderr at the end, and put back what they were; a closed one is opened anew."""
+    before: dict[str, Any] = {name: getattr(sys, name) for name in ("stdout", "stderr")}
+    try:
         yield
     finally:
-        for stream in (sys.stdout, sys.stderr):
-            with contextlib.suppress(OSError, ValueError):
-                stream.flush()
-        _redirect(saved)
-        _remove_empty(logs)
+        _open_missing()
+        for descriptor, (name, stream) in enumerate(before.items(), start=1):
+            with contextlib.suppress(Exception):  # the black box may have put anything there
+                getattr(sys, name).flush()
+            setattr(sys, name, _reopened(descriptor) if stream is None or stream.closed else stream)
+
+
+def _reopened(descriptor: int) -> IO[str]:
+    return open(descriptor, "w", buffering=1, encoding="utf-8", errors="backslashreplace", closefd=False)
+
+
+def _open_missing() -> None:
+    """Give descriptors 0 to 2 a place to lead to if they have been closed, lest a file of ours takes the number."""
+    for descriptor in (0, 1, 2):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # it takes the lowest free number, this one
 
 
 def _redirect(sources: list[int]) -> None:

@@ -1,4 +1,4 @@
-"""A worker process seen from its parent: started, spoken to over two pipes, killed with all it started."""
+"""A worker process seen from its parent: started, spoken to over two pipes, ended with all it started."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.command import THREAD_CAPS
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
 from hypermap_lite.evaluation.outcome import Replicate
+from hypermap_lite.evaluation.sessions import kill_all, members, signal_all
+from hypermap_lite.history.lock import held_descriptors
 
 THREAD_VARIABLES: Final = (
     "OMP_NUM_THREADS",
@@ -29,17 +31,19 @@ THREAD_VARIABLES: Final = (
 """Set to 1 in workers unless the user set them: n workers share the cores, and results must not depend on n."""
 
 FAREWELL_SECONDS: Final = 2.0
-"""How long an idle worker may take to end by itself [s]."""
+"""How long a worker whose pipe has closed, or that is no longer needed, may take to end by itself [s]."""
 
 BOOT: Final = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
-    "from hypermap_lite.evaluation.worker import main; main(int(sys.argv[2]), int(sys.argv[3]))"
+    "from hypermap_lite.evaluation.worker import main; main(*map(int, sys.argv[2:]))"
 )
 """Program of a worker: the parent's module path, then `hypermap_lite.evaluation.worker`; never the user's script."""
 
 
 class Worker:
     """One worker process, leader of its own session and process group.
+
+    It holds the locks of run folders that this process holds, so that a folder is free only when all have ended.
 
     Parameters
     ----------
@@ -61,6 +65,8 @@ class Worker:
         """The call it is at; None while it is idle."""
         self.started: float | None = None
         """When the call began, by `time.perf_counter` [s]; None while the evaluator is being loaded."""
+        self.told_to_stop: float | None = None
+        """When it was sent SIGTERM, by `time.perf_counter` [s]."""
         self._is_loaded = False
         self._send(evaluator)
 
@@ -79,7 +85,9 @@ class Worker:
         return self.answers.poll()
 
     def receive(self) -> Replicate | str | None:
-        """Return a finished call, None for "the evaluator is loaded", or why it could not be loaded.
+        """Return a finished call, None for news without a result, or why the evaluator could not be loaded.
+
+        An answer to another request than the one it is at is no result.
 
         Raises
         ------
@@ -91,6 +99,8 @@ class Worker:
             self._is_loaded = True
             self.started = time.perf_counter()
         elif isinstance(message, Replicate):
+            if self.request is None or _call_of(message) != _call_of(self.request):
+                return None
             self.request = None
         return message
 
@@ -104,11 +114,21 @@ class Worker:
             return False
         return os.waitid(os.P_PID, self.process.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is None
 
+    def terminate(self) -> None:
+        """Ask the process and all it started to end."""
+        self.told_to_stop = time.perf_counter()
+        signal_all(self.process.pid, signal.SIGTERM)
+
+    def is_deserted(self) -> bool:
+        """Tell whether nothing is left of its session but the guardian."""
+        return not self.is_alive() and len(members(self.process.pid)) <= 1
+
     def kill(self) -> None:
-        """Kill the process and all in its group at once."""
+        """Kill the process and all it started at once."""
         if self.process.returncode is None:
             with contextlib.suppress(ProcessLookupError, PermissionError):  # macOS: only zombies are left
                 os.killpg(self.process.pid, signal.SIGKILL)
+            kill_all(self.process.pid)  # not reaped yet: the number is still its own
             self.process.wait()
         self._requests.close()
         self.answers.close()
@@ -121,21 +141,30 @@ class Worker:
     def stop(self) -> None:
         """Let a worker that was dismissed end by itself, then kill what is left of its group."""
         if self.request is None:
-            deadline = time.perf_counter() + FAREWELL_SECONDS
-            while self.is_alive() and time.perf_counter() < deadline:
-                time.sleep(0.002)
+            self.wait(FAREWELL_SECONDS)
         self.kill()
+
+    def wait(self, seconds: float) -> None:
+        """Wait until the process has ended by itself, but not for longer than some time."""
+        deadline = time.perf_counter() + seconds
+        while self.is_alive() and time.perf_counter() < deadline:
+            time.sleep(0.002)
+
+
+def _call_of(record: EvaluationRequest | Replicate) -> tuple[int, int]:
+    return record.trial, record.replicate
 
 
 def _start(requests: int, answers: int) -> subprocess.Popen[bytes]:
     capped = [name for name in THREAD_VARIABLES if name not in os.environ]
     environment = os.environ | dict.fromkeys(capped, "1") | {THREAD_CAPS: " ".join(capped)}
+    descriptors = (requests, answers, *held_descriptors())
     return subprocess.Popen(
-        [sys.executable, "-c", BOOT, json.dumps(sys.path), str(requests), str(answers)],
+        [sys.executable, "-c", BOOT, json.dumps(sys.path), *map(str, descriptors)],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         env=environment,
-        pass_fds=(requests, answers),
+        pass_fds=descriptors,
         start_new_session=True,
     )
 

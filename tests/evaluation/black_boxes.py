@@ -2,17 +2,100 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
+import stat
 import subprocess
 import sys
 import time
+from multiprocessing.connection import Connection
 from pathlib import Path
+
+from hypermap_lite.evaluation.evaluator import EvaluationRequest, answer
+from hypermap_lite.evaluation.outcome import Outcome, State
 
 
 def sphere(configuration, seed):
     x = configuration["x"]
     return {"f": x**2 + seed * 1e-12, "g": (x - 1) ** 2, "pid": os.getpid()}
+
+
+def sum_and_difference(configuration):
+    return {"f": configuration["x"] + 1, "g": configuration["x"] - 1}
+
+
+def fork(configuration, trial):
+    """Leave a child behind that comes back from here as well, in some way."""
+    child = os.fork()
+    if child == 0 and trial % 2:
+        sys.exit("the child")
+    if child:
+        os.waitpid(child, 0)
+    return {"f": trial, "g": 0.0, "pid": os.getpid()}
+
+
+def answer_for_another(configuration, trial):
+    """Send a record through every pipe there is, as a confused child would, and return."""
+    asked = EvaluationRequest(trial=trial + 1, replicate=0, seed=1, configuration={}, directory=Path())
+    stray = answer(asked, Outcome(state=State.COMPLETED, values={"f": -1.0, "g": -1.0}), 0.0)
+    for descriptor in range(3, 20):
+        with contextlib.suppress(OSError):
+            if stat.S_ISFIFO(os.fstat(descriptor).st_mode):
+                connection = Connection(os.dup(descriptor), readable=False)
+                connection.send(stray)
+                connection.close()
+    return {"f": trial, "g": 0.0}
+
+
+def interrupt(configuration):
+    raise KeyboardInterrupt
+
+
+def close_everything(configuration):
+    os.closerange(3, 64)
+    return {"f": 1.0, "g": 2.0}
+
+
+def close_stdout(configuration, trial):
+    print(f"trial {trial}")
+    sys.stdout.close()
+    if trial == 1:
+        os.close(1)
+    if trial == 2:
+        sys.stderr = None
+    return {"f": 1.0, "g": 2.0}
+
+
+def talk_much(configuration):
+    print("first")
+    print("x" * 4_000_000)
+    print("last")
+    return {"f": 1.0, "g": 2.0}
+
+
+def talk_much_and_hang(configuration):
+    talk_much(configuration)
+    hang(configuration)
+
+
+def stop_when_told(configuration):
+    """Note in a file that SIGTERM came, as a program that stops its robot would."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(Path(configuration["target"]).write_text("stopped")))
+    time.sleep(60)
+
+
+def ignore_sigterm(configuration):
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    time.sleep(60)
+
+
+def start_a_busy_child(configuration):
+    """Hold the interpreter for good, with a child in a process group of its own."""
+    child = subprocess.Popen(["/bin/sleep", "60"], process_group=0)
+    Path(configuration["target"]).write_text(f"{os.getpid()} {child.pid}")
+    while True:
+        sum(range(10**9))
 
 
 def crash(configuration):
@@ -95,3 +178,10 @@ NOT_CALLABLE = 3
 
 def threads(configuration):
     return {"f": int(os.environ["OMP_NUM_THREADS"]), "g": int(os.environ["MKL_NUM_THREADS"])}
+
+
+def note_that_it_began(configuration, trial):
+    """Leave a file in the trial's folder, which is the only one there is to write to."""
+    folder = Path(os.readlink("/proc/self/fd/1")).parent
+    (folder / "begun").write_text("")
+    return {"f": trial, "g": 0.0}

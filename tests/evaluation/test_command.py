@@ -1,6 +1,7 @@
 """Tests for command.py."""
 
 import json
+import os
 import sys
 
 import pytest
@@ -10,6 +11,7 @@ from hypermap_lite.evaluation.command import THREAD_CAPS, Command, describe_stat
 from hypermap_lite.evaluation.evaluator import call
 from hypermap_lite.evaluation.outcome import State
 from tests.evaluation.examples import request
+from tests.evaluation.test_worker import children_of, is_running, wait_for
 
 
 def shell(script, **options):
@@ -153,3 +155,41 @@ def test_interpreter_is_the_one_in_use(tmp_path):
 def test_reason_is_an_evaluation_error(tmp_path):
     with pytest.raises(EvaluationError, match="exit status 1"):
         shell("false")(request(tmp_path))
+
+
+def test_line_separator_within_a_string_does_not_end_the_line(tmp_path):
+    command = shell("""printf '{"f": 2, "note": "a\\342\\200\\250b"}'""")
+    assert command(request(tmp_path)).values == {"f": 2.0}
+
+
+def test_result_line_that_is_too_long_is_named_as_such(tmp_path):
+    code = "import json; print(json.dumps(dict(f=1, path='x' * 2**20)))"
+    said = reason(python(code), request(tmp_path))
+    assert "is longer than 1 MiB: write the result to {result_file}" in said
+
+
+def test_what_a_program_leaves_running_ends_with_its_call(tmp_path):
+    command = shell("""sleep 60 & echo "{\\"f\\": $!}" """)
+    pid = int(command(request(tmp_path)).values["f"])
+    wait_for(lambda: not is_running(pid))
+
+
+def test_failing_program_leaves_nothing_running_either(tmp_path):
+    said = reason(shell("sleep 60 & echo $! >&2; exit 3"), request(tmp_path))
+    wait_for(lambda: not is_running(int(said.split()[-1])))
+
+
+def test_interrupt_of_this_process_ends_the_program(tmp_path, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("os.waitid", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        shell("echo $$; exec sleep 60")(request(tmp_path))
+    assert children_of(os.getpid()) == []
+
+
+def test_log_of_a_program_is_limited_after_its_result_was_read(tmp_path):
+    command = shell("""head -c 4000000 /dev/zero | tr '\\0' x; echo; echo '{"f": 1}'""")
+    assert command(request(tmp_path)).values == {"f": 1.0}
+    assert (tmp_path / "0000" / "replicate_0.stdout.log").stat().st_size < 2.1 * 2**20

@@ -6,6 +6,7 @@ import time
 import pytest
 
 from hypermap_lite.errors import UsageError
+from hypermap_lite.evaluation import executors
 from hypermap_lite.evaluation.command import Command
 from hypermap_lite.evaluation.executors import InProcessExecutor, ProcessExecutor
 from hypermap_lite.evaluation.outcome import State
@@ -79,6 +80,8 @@ def wait_until_gone_or(target):
         ("segfault", "the worker process ended: killed by signal 11 (SIGSEGV)"),
         ("exit_at_once", "the worker process ended: exit status 3"),
         ("exit_politely", "SystemExit: enough"),
+        ("interrupt", "KeyboardInterrupt"),
+        ("close_everything", "the worker process ended: exit status 1"),
         ("crash", "RuntimeError: no such luck"),
     ],
 )
@@ -124,8 +127,64 @@ def test_requests_are_taken_only_when_they_can_start(tmp_path):
     with ProcessExecutor(1) as executor:
         calls = executor.run(function("sphere"), ask())
         assert next(calls).trial == 0
+        assert taken == [0]
+        assert next(calls).trial == 1
         assert taken == [0, 1]
         calls.close()
+
+
+def test_call_ends_once_though_the_black_box_forks(tmp_path):
+    with ProcessExecutor(1) as executor:
+        records = list(executor.run(function("fork"), requests(tmp_path, 5)))
+        pids = {record.outcome.metrics["pid"] for record in records}
+    assert [(r.trial, r.outcome.values["f"]) for r in records] == [(t, t) for t in range(5)]
+    assert len(pids) == 1
+
+
+def test_answer_to_another_request_is_dropped(tmp_path):
+    with ProcessExecutor(1) as executor:
+        records = list(executor.run(function("answer_for_another"), requests(tmp_path, 3)))
+    assert [(r.trial, r.outcome.values["f"]) for r in records] == [(0, 0.0), (1, 1.0), (2, 2.0)]
+
+
+def test_closed_streams_do_not_spoil_the_calls_that_follow(tmp_path):
+    with ProcessExecutor(1) as executor:
+        records = list(executor.run(function("close_stdout"), requests(tmp_path, 5)))
+    assert [r.outcome.error for r in records] == [""] * 5
+    for trial in range(5):
+        assert (tmp_path / f"000{trial}" / "replicate_0.stdout.log").read_text() == f"trial {trial}\n"
+
+
+@pytest.mark.parametrize("name", ["talk_much", "talk_much_and_hang"])
+def test_log_keeps_its_beginning_and_its_end(tmp_path, name):
+    with ProcessExecutor(1, timeout_seconds=0.3) as executor:
+        list(executor.run(function(name), [request(tmp_path)]))
+    text = (tmp_path / "0000" / "replicate_0.stdout.log").read_text()
+    assert text.startswith("first\n")
+    assert text.endswith("x\nlast\n")
+    assert "bytes of this log were cut out here" in text
+    assert len(text) < 2.1 * 2**20
+
+
+def test_call_past_the_time_limit_can_stop_in_order(tmp_path):
+    target = tmp_path / "stopped"
+    script = f"trap 'echo stopped > {target}; exit 0' TERM; while :; do sleep 0.05; done"
+    command = Command(command=["/bin/sh", "-c", script], objectives=("f",))
+    with ProcessExecutor(1, timeout_seconds=0.2) as executor:
+        for evaluator in (command, function("stop_when_told")):
+            (record,) = executor.run(evaluator, [request(tmp_path, target=str(target))])
+            assert record.outcome.state is State.TIMEOUT
+            assert target.read_text().strip() == "stopped"
+            target.unlink()
+
+
+def test_call_that_does_not_stop_in_order_is_killed(tmp_path, monkeypatch):
+    monkeypatch.setattr(executors, "GRACE_SECONDS", 0.1)
+    command = Command(command=["/bin/sh", "-c", "trap '' TERM; while :; do sleep 0.05; done"], objectives=("f",))
+    with ProcessExecutor(1, timeout_seconds=0.2) as executor:
+        for evaluator in (command, function("ignore_sigterm")):
+            (record,) = executor.run(evaluator, [request(tmp_path)])
+            assert record.outcome.state is State.TIMEOUT
 
 
 def test_abandoned_calls_are_killed(tmp_path):

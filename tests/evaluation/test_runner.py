@@ -265,3 +265,33 @@ def test_log_has_a_line_per_trial(tmp_path):
     run(tmp_path, n=2)
     lines = (tmp_path / "run.log").read_text().splitlines()
     assert sum(" trial " in line and " model completed 0.0 s f=" in line for line in lines) == 2
+
+
+class LosesAnAnswer(InProcessExecutor):
+    """Does not bring back the second call of a batch."""
+
+    def run(self, evaluator, requests):
+        yield from (record for i, record in enumerate(super().run(evaluator, requests)) if i != 1)
+
+
+def test_result_that_does_not_arrive_ends_the_run_with_an_error(tmp_path):
+    with pytest.raises(RuntimeError, match="trial 1 was evaluated, but its result did not arrive"):
+        run(tmp_path, executor=LosesAnAnswer(), batch=3)
+    assert [row["trial"] for row in rows(tmp_path, "evaluations.csv")] == ["0", "2"]
+
+
+def test_black_box_that_forks_ends_like_one_that_does_not(tmp_path):
+    assert run(tmp_path, function("fork"), executor=ProcessExecutor(2), batch=2) is StopReason.BUDGET
+    assert [row["f"] for row in rows(tmp_path, "history.csv")] == [f"{t}.0" for t in range(7)]
+
+
+def test_no_call_begins_before_the_one_before_it_is_written(tmp_path):
+    unwritten = []
+
+    class Observer(RunObserver):
+        def on_replicate(self, replicate):
+            begun = list((tmp_path / "trials").glob("*/begun"))
+            unwritten.append(len(begun) - len(rows(tmp_path, "evaluations.csv")))
+
+    run(tmp_path, function("note_that_it_began"), executor=ProcessExecutor(1), batch=3, observer=Observer())
+    assert unwritten == [0] * 7

@@ -1,5 +1,6 @@
 """Tests for worker.py."""
 
+import io
 import os
 import signal
 import subprocess
@@ -7,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-from hypermap_lite.evaluation.worker import captured_output
+from hypermap_lite.evaluation.worker import captured_output, restored_streams
 from tests.evaluation.examples import request
 
 PARENT = """
@@ -47,6 +48,19 @@ def test_worker_and_what_it_started_die_with_the_parent(tmp_path):
     assert not target.exists()
 
 
+BUSY_PARENT = PARENT.replace("start_a_late_writer", "start_a_busy_child")
+
+
+def test_worker_that_never_pauses_dies_with_the_parent_and_so_do_its_children(tmp_path):
+    target = tmp_path / "pids"
+    command = [sys.executable, "-c", BUSY_PARENT, str(target)]
+    with subprocess.Popen(command, cwd=Path(__file__).parents[2]) as parent:
+        wait_for(lambda: target.exists() and len(target.read_text().split()) == 2)
+        pids = [int(pid) for pid in target.read_text().split()]
+        parent.send_signal(signal.SIGKILL)
+    wait_for(lambda: not any(is_running(pid) for pid in pids), seconds=5)
+
+
 def is_running(pid):
     try:
         state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
@@ -75,3 +89,13 @@ def test_folder_that_cannot_be_made_does_not_stop_the_call(tmp_path):
     with captured_output(request(tmp_path)):
         reached = True
     assert reached
+
+
+def test_streams_that_the_black_box_closes_or_replaces_are_put_back(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "stdout", io.StringIO())
+    monkeypatch.setattr(sys, "stderr", before := io.StringIO())
+    with restored_streams():
+        sys.stdout.close()
+        sys.stderr = None
+    assert not sys.stdout.closed
+    assert sys.stderr is before
