@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import inspect
+import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +27,10 @@ class PythonFunction:
     It returns a mapping with every objective (other numbers become columns of ``evaluations.csv``), a sequence with
     the objectives in their order, or, for one objective, a number. ``{"feasible": False}`` marks a configuration
     that is not allowed.
+
+    The module is imported in the main process, to find mistakes before the first evaluation, and again in every
+    worker: it must not connect to hardware, or anything else that exists once, while it is imported. What it prints
+    meanwhile goes to stderr.
 
     Raises
     ------
@@ -94,7 +100,8 @@ def import_function(name: str, search_path: Sequence[str] = ()) -> Callable[...,
         if folder not in sys.path:
             sys.path.insert(0, folder)
     try:
-        found: Any = importlib.import_module(module_name)
+        with _stdout_to_stderr():
+            found: Any = importlib.import_module(module_name)
     except (Exception, SystemExit) as error:
         places = ", ".join(search_path) or "Python's module path"
         raise ScenarioError(
@@ -108,6 +115,24 @@ def import_function(name: str, search_path: Sequence[str] = ()) -> Callable[...,
         raise ScenarioError(PATH, f"'{name}' is {type(found).__name__}, not a function", allowed="something callable")
     function: Callable[..., object] = found
     return function
+
+
+@contextlib.contextmanager
+def _stdout_to_stderr() -> Iterator[None]:
+    """Keep stdout free of what imports print, be it Python or a library in C: somebody may read JSON there."""
+    try:
+        saved = os.dup(1)
+        os.dup2(2, 1)
+    except OSError:  # one of the two is closed
+        with contextlib.redirect_stdout(sys.stderr):
+            yield
+        return
+    try:
+        with contextlib.redirect_stdout(sys.stderr):
+            yield
+    finally:
+        os.dup2(saved, 1)
+        os.close(saved)
 
 
 def _functions_in(module: object) -> list[str]:

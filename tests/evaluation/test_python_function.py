@@ -95,3 +95,15 @@ def test_import_error_within_the_module_is_shown(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(ScenarioError, match="importing 'broken_box' failed: OSError: no robot on port 7"):
         PythonFunction(function="broken_box:f", objectives=("f",))
+
+
+def test_what_an_import_prints_goes_to_stderr(tmp_path, monkeypatch, capfd):
+    (tmp_path / "noisy_box.py").write_text(
+        "import os\nprint('loud')\nos.write(1, b'from C\\n')\ndef f(c): return 1.0\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    PythonFunction(function="noisy_box:f", objectives=("f",))
+    print("after")
+    out, err = capfd.readouterr()
+    assert out == "after\n"
+    assert sorted(err.splitlines()) == ["from C", "loud"]
