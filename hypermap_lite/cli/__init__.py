@@ -7,16 +7,18 @@ subcommand that needs it, when it runs.
 from __future__ import annotations
 
 import argparse
-import os
+import contextlib
 import sys
 import traceback
 from collections.abc import Sequence
+from pathlib import Path
 from types import ModuleType
 from typing import Final
 
 from hypermap_lite import __version__
 from hypermap_lite.cli import check, pareto, plot, run
-from hypermap_lite.errors import HypermapLiteError
+from hypermap_lite.cli.streams import WatchedStream, robust_streams
+from hypermap_lite.errors import HypermapLiteError, UsageError, nearest
 
 COMMANDS: Final[dict[str, ModuleType]] = {"run": run, "check": check, "pareto": pareto, "plot": plot}
 """Subcommands by name; each module has `add_parser` and `execute`."""
@@ -45,27 +47,47 @@ exit status:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
-    arguments = list(sys.argv[1:] if argv is None else argv)
+    with robust_streams() as stdout:
+        try:
+            status = _run(list(sys.argv[1:] if argv is None else argv), stdout)
+        finally:
+            with contextlib.suppress(OSError):
+                stdout.flush()
+        if stdout.problem is None or isinstance(stdout.problem, BrokenPipeError):
+            return status
+        return status or _report(stdout.problem, f"stdout: {stdout.problem.strerror}", 1, is_debugging=False)
+
+
+def _run(arguments: list[str], stdout: WatchedStream) -> int:
     common, arguments = _common_parser().parse_known_args(arguments)
     if not arguments:
         arguments = ["--help"]
     elif arguments[0] not in COMMANDS and not arguments[0].startswith("-h") and arguments[0] not in _OWN_OPTIONS:
+        guess = _misspelt_command(arguments[0])
+        if guess:
+            print(f"error: '{arguments[0]}' is neither a command nor a scenario file\n  hint: {guess}", file=sys.stderr)
+            return UsageError.exit_code
         arguments.insert(0, "run")
     args = _parser().parse_args(arguments, namespace=common)
     try:
         status: int = args.execute(args)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the reader of our stdout has gone
-        return 0
     except HypermapLiteError as error:
         return _report(error, str(error), error.exit_code, is_debugging=args.debug)
     except KeyboardInterrupt as error:
         return _report(error, "interrupted", 130, is_debugging=args.debug)
     except Exception as error:
+        if error is stdout.problem:
+            return 0 if isinstance(error, BrokenPipeError) else 1  # a reader like `head` may leave early
         message = f"unexpected {type(error).__name__}: {error}\n  hint: --debug shows where; please report it."
         return _report(error, message, 1, is_debugging=args.debug)
     return status
+
+
+def _misspelt_command(argument: str) -> str:
+    """Return a hint if an argument is probably meant to be a command: no file, no path, no option, and close to one."""
+    if argument.startswith("-") or Path(argument).exists() or Path(argument).suffix or "/" in argument:
+        return ""
+    return nearest(argument, COMMANDS)
 
 
 _OWN_OPTIONS: Final = ("--help", "--version")

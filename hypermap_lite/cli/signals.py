@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 from types import FrameType, TracebackType
@@ -47,7 +48,8 @@ class StopSignals:
         if self.is_requested:
             raise StoppedAtOnce(number)
         self.is_requested = True
-        os.write(2, NOTICE)  # not through a stream, in whose midst we may be
+        with contextlib.suppress(OSError):  # the wish counts though nobody reads the notice
+            os.write(2, NOTICE)  # not through a stream, in whose midst we may be
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
         raise StoppedAtOnce(number)

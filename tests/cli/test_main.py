@@ -1,12 +1,15 @@
 """Tests for cli/__init__.py and __main__.py."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from hypermap_lite import __version__, cli
 from hypermap_lite.errors import NoValidEvaluationError, RepeatedFailureError, RunFolderError, ScenarioError, UsageError
+from tests.cli.scenarios import write_scenario
 
 
 @pytest.fixture
@@ -113,3 +116,62 @@ def test_heavy_libraries_are_not_imported_for_the_help():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+def shell(script, folder, **environment):
+    """Run a shell script in which HL is the program."""
+    script = script.replace("HL", f"'{sys.executable}' -m hypermap_lite")
+    variables = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])} | environment
+    command = ["/bin/bash", "-c", f"set -o pipefail; {script}"]
+    return subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(
+    ("script", "status"),
+    [
+        pytest.param("HL run scenario.json --no-plot 2>&-", 0, id="stderr closed"),
+        pytest.param("HL run scenario.json --no-plot >&-", 0, id="stdout closed"),
+        pytest.param("HL check none.json 2>&-", 2, id="error with stderr closed"),
+        pytest.param("HL check none.json 2>&1 | true", 2, id="error with stderr broken"),
+        pytest.param("HL check none.json 2>/dev/full", 2, id="error with stderr full"),
+        pytest.param("HL --help | true", 0, id="help with stdout broken"),
+        pytest.param("HL check scenario.json | true", 0, id="stdout broken"),
+        pytest.param("HL check scenario.json >/dev/full", 1, id="stdout full"),
+    ],
+)
+def test_exit_status_does_not_depend_on_who_reads_messages(tmp_path, script, status):
+    write_scenario(tmp_path, budget={"evaluations": 2})
+    done = shell(script, tmp_path)
+    assert done.returncode == status, done.stderr
+    assert "Traceback" not in done.stderr
+    assert "Exception ignored" not in done.stderr
+
+
+def test_terminal_without_plus_minus_gets_its_code(tmp_path):
+    write_scenario(tmp_path, evaluator={"replicates": 2}, budget={"evaluations": 2})
+    done = shell("HL run scenario.json --no-plot | cat; HL pareto run", tmp_path, PYTHONIOENCODING="ascii")
+    assert done.returncode == 0, done.stderr
+    assert "unexpected" not in done.stderr
+
+
+def test_broken_pipe_of_something_else_is_an_unexpected_error(capsys, failing_run):
+    failing_run.append(BrokenPipeError("not stdout"))
+    assert cli.main(["run", "a.json"]) == 1
+    assert "unexpected BrokenPipeError: not stdout" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("word", "guess"), [("plto", "plot"), ("chekc", "check"), ("paretto", "pareto")])
+def test_misspelt_command_is_recognized(tmp_path, monkeypatch, capsys, word, guess):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main([word, "out/one"]) == 2
+    expected = f"error: '{word}' is neither a command nor a scenario file\n  hint: Did you mean '{guess}'?\n"
+    assert capsys.readouterr().err == expected
+
+
+def test_file_named_like_a_command_with_a_slip_is_a_scenario(tmp_path, monkeypatch):
+    seen = []
+    monkeypatch.setattr("hypermap_lite.cli.run.execute", lambda args: seen.append(args.scenario) or 0)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plto").write_text("{}")
+    assert cli.main(["plto"]) == cli.main(["plot.json"]) == 0
+    assert seen == ["plto", "plot.json"]

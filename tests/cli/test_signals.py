@@ -40,3 +40,13 @@ def test_ignored_signal_stays_ignored():
             os.kill(os.getpid(), signal.SIGHUP)
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_notice_that_cannot_be_written_does_not_spoil_the_wish(monkeypatch):
+    def refuse(descriptor, text):
+        raise BrokenPipeError
+
+    with StopSignals() as signals:
+        monkeypatch.setattr("hypermap_lite.cli.signals.os.write", refuse)
+        os.kill(os.getpid(), signal.SIGINT)
+        assert signals.is_requested
