@@ -24,6 +24,8 @@ from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.model import EvaluatorSpec, Scenario
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from hypermap_lite.evaluation.evaluator import Evaluator
     from hypermap_lite.evaluation.outcome import Evaluation
     from hypermap_lite.optimizers.base import Optimizer
@@ -54,6 +56,12 @@ class Result:
 
     run_folder: Path
     stop_reason: StopReason
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return ``history.csv`` as a data frame: a row per configuration, every number as it was written."""
+        import pandas as pd  # slow to import, used here only
+
+        return pd.read_csv(self.run_folder / "history.csv", float_precision="round_trip")
 
 
 def optimize(

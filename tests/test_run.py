@@ -41,6 +41,14 @@ def test_result_holds_evaluations_front_and_hypervolume(tmp_path):
     assert (result.run_folder, result.stop_reason) == (tmp_path, StopReason.BUDGET)
 
 
+def test_the_history_as_a_data_frame_has_every_number_as_written(tmp_path):
+    result = optimize(SCENARIO, two, output_directory=tmp_path)
+    frame = result.to_frame()
+    assert frame["trial"].tolist() == list(range(6))
+    assert frame["x"].tolist() == [e.configuration["x"] for e in result.evaluations]
+    assert frame["f"].tolist() == [e.values["f"] for e in result.evaluations]
+
+
 def test_values_beyond_the_square_root_of_floats_have_a_front_and_no_hypervolume(tmp_path):
     sides = SCENARIO | {"objectives": [{"name": "f"}, {"name": "g"}]}
     result = optimize(sides, lambda c: (c["x"] * 0.8e308, -c["x"] * 0.8e308), output_directory=tmp_path)
