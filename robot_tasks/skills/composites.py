@@ -7,6 +7,7 @@ starred kinds remember, for one run, which children are done.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 from robot_tasks.skills.behaviour import FAILURE, RUNNING, SUCCESS, Behaviour, SkillContext, Status
 
@@ -47,10 +48,11 @@ class Serial(Composite):
         return SUCCESS
 
 
-class SerialStar(Composite):
-    """Tick children one after the other, each until it succeeds; a failure ends the sequence."""
+class _Starred(Composite):
+    """Tick children one after the other, each until it ends with the status that passes on to the next."""
 
     __slots__ = ("_current",)
+    _passes_on: ClassVar[Status]
 
     def _initialise(self, context: SkillContext) -> None:
         self._current = 0
@@ -58,10 +60,17 @@ class SerialStar(Composite):
     def _update(self, context: SkillContext) -> Status:
         while self._current < len(self.children):
             status = self.children[self._current].tick(context)
-            if status is not SUCCESS:
+            if status is not self._passes_on:
                 return status
             self._current += 1
-        return SUCCESS
+        return self._passes_on
+
+
+class SerialStar(_Starred):
+    """Tick children one after the other, each until it succeeds; a failure ends the sequence."""
+
+    __slots__ = ()
+    _passes_on = SUCCESS
 
 
 class Selector(Composite):
@@ -78,21 +87,11 @@ class Selector(Composite):
         return FAILURE
 
 
-class SelectorStar(Composite):
+class SelectorStar(_Starred):
     """Try children one after the other, each until it fails; a success ends the search."""
 
-    __slots__ = ("_current",)
-
-    def _initialise(self, context: SkillContext) -> None:
-        self._current = 0
-
-    def _update(self, context: SkillContext) -> Status:
-        while self._current < len(self.children):
-            status = self.children[self._current].tick(context)
-            if status is not FAILURE:
-                return status
-            self._current += 1
-        return FAILURE
+    __slots__ = ()
+    _passes_on = FAILURE
 
 
 class ParallelFs(Composite):
