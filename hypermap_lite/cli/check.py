@@ -7,6 +7,8 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
+from hypermap_lite.cli.arguments import add_scenario
+
 if TYPE_CHECKING:
     from argparse import ArgumentParser, _SubParsersAction
 
@@ -19,15 +21,7 @@ def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> ArgumentParser:
         description="Validate a scenario, print the effective one with every default filled in, and warn of what is "
         "probably not meant. Nothing is evaluated.",
     )
-    parser.add_argument("scenario", help="scenario file (JSON)")
-    parser.add_argument(
-        "--set",
-        dest="overrides",
-        action="append",
-        default=[],
-        metavar="KEY.PATH=VALUE",
-        help="change one value, as in budget.evaluations=30; may be repeated",
-    )
+    add_scenario(parser)
     parser.add_argument("--json", action="store_true", help="print the effective scenario as JSON")
     parser.set_defaults(execute=execute)
     return parser

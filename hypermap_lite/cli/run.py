@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from hypermap_lite.cli.arguments import add_scenario
 from hypermap_lite.errors import HypermapLiteError
 
 if TYPE_CHECKING:
@@ -39,18 +40,10 @@ def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> None:
         epilog=EPILOG,
         formatter_class=RawDescriptionHelpFormatter,
     )
-    parser.add_argument("scenario", help="scenario file (JSON)")
+    add_scenario(parser)
     parser.add_argument("--seed", type=int, metavar="N", help="seed, instead of the scenario's")
     parser.add_argument("--workers", type=int, metavar="N", help="evaluations at the same time; results stay the same")
     parser.add_argument("--output-dir", metavar="DIR", help="run folder (default: the scenario's)")
-    parser.add_argument(
-        "--set",
-        dest="overrides",
-        action="append",
-        default=[],
-        metavar="KEY.PATH=VALUE",
-        help="change one value, as in budget.evaluations=30; may be repeated",
-    )
     begin = parser.add_mutually_exclusive_group()
     begin.add_argument(
         "--fresh", action="store_true", help="start anew; an existing run folder is renamed to DIR.bak-N, never deleted"

@@ -26,7 +26,7 @@ def test_codes_of_values_stay_in_the_unit_interval_and_close_to_where_they_came_
     again = parameter.encode(parameter.decode(u))
     assert np.all((again >= 0) & (again <= 1))
     if parameter.n_levels is None:
-        assert np.allclose(again, u, atol=1e-6)  # thirteen digits of a narrow range far from zero
+        assert np.allclose(again, u, atol=1e-6)  # twelve digits of a narrow range far from zero
 
 
 @given(parameters(), codes)
