@@ -110,17 +110,26 @@ def _collect(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _broken(error: json.JSONDecodeError, name: str) -> ScenarioError:
+    error = _at_trailing_comma(error)
     line = error.doc.splitlines()[error.lineno - 1].strip() if error.doc.splitlines()[error.lineno - 1 :] else ""
     problem = f"broken JSON in line {error.lineno}, column {error.colno}: {error.msg[0].lower()}{error.msg[1:]}"
     seen = f"the line reads: {line[:60]}" if line else "the file ends here"
     return ScenarioError(f"{name}:{error.lineno}:{error.colno}", f"{problem}; {seen}", hint=_repair(error))
 
 
+def _at_trailing_comma(error: json.JSONDecodeError) -> json.JSONDecodeError:
+    """Point at a comma before a closing bracket, as Python does from 3.13 on; leave any other error as it is."""
+    before = error.doc[: error.pos].rstrip()
+    if before.endswith(",") and error.doc[error.pos :].lstrip()[:1] in ("}", "]"):
+        return json.JSONDecodeError("trailing comma before the closing bracket", error.doc, len(before) - 1)
+    return error
+
+
 def _repair(error: json.JSONDecodeError) -> str:
     """Guess what to do about a syntax error from the text around it."""
-    before, after = error.doc[: error.pos].rstrip(), error.doc[error.pos :].lstrip()
+    after = error.doc[error.pos :].lstrip()
     word = next((word for word in PYTHON_WORDS if after.startswith(word)), "")
-    if before.endswith(",") and after[:1] in ("}", "]"):
+    if after.startswith(",") and after[1:].lstrip()[:1] in ("}", "]"):
         return "Remove the comma before the closing bracket."
     if after.startswith(COMMENTS):
         return "JSON has no comments; use a description."

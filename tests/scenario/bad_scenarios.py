@@ -66,7 +66,7 @@ P = "$.input_parameters.p"
 BAD: dict[str, Bad] = {
     # the file itself
     "broken_json": Bad('{\n  "seed": 1\n  "x": 2\n}', (":3:3", "line 3, column 3", '"x": 2', "comma before it")),
-    "trailing_comma": Bad('{"seed": 1,}', ("line 1, column 12", "Remove the comma")),
+    "trailing_comma": Bad('{"seed": 1,}', ("line 1, column 11", "trailing comma before", "Remove the comma")),
     "single_quotes": Bad("{'seed': 1}", ("line 1, column 2", "double quotes")),
     "comment": Bad('{\n  // why\n  "seed": 1}', ("line 2, column 3", "no comments")),
     "python_word": Bad('{"seed": None}', ("line 1, column 10", "Write null instead of None")),
