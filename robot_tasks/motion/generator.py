@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from robot_tasks.geometry import Pose
+from math import sqrt
+from typing import Final
+
+from robot_tasks.geometry import Pose, Vector
+from robot_tasks.motion.overlay import Overlay
 from robot_tasks.motion.trajectory import Trajectory
+
+FADING_SPEED: Final = 0.05
+"""Speed in [m/s] at which the last offset of an overlay that was taken away shrinks to zero."""
+
+_NO_OFFSET: Final[Vector] = (0.0, 0.0, 0.0)
 
 
 class MotionGenerator:
-    """Hold a pose, or follow a trajectory to the latest goal.
+    """Hold a pose, or follow a trajectory to the latest goal, with an overlay on top.
 
     A goal that differs from the present one starts a new trajectory from the *measured* pose and from rest: there is
     no blending, so an arm that lags behind its reference pauses at every change of mind.
@@ -18,11 +27,14 @@ class MotionGenerator:
         Pose to hold until the first goal is set.
     """
 
-    __slots__ = ("_started", "_trajectory")
+    __slots__ = ("_last_offset", "_overlay", "_overlay_changed", "_started", "_trajectory")
 
     def __init__(self, pose: Pose) -> None:
         self._trajectory = Trajectory(pose, pose)
         self._started = 0.0
+        self._overlay: Overlay | None = None
+        self._overlay_changed = 0.0
+        self._last_offset = _NO_OFFSET
 
     @property
     def goal(self) -> Pose:
@@ -34,10 +46,37 @@ class MotionGenerator:
         self._trajectory = Trajectory(measured, goal)
         self._started = time
 
+    def set_overlay(self, overlay: Overlay | None, time: float) -> None:
+        """Start an overlay at a time in [s] unless an equal one runs; None lets the last offset fade."""
+        if overlay is self._overlay or overlay == self._overlay:
+            return
+        self._last_offset = self._offset(time)
+        self._overlay = overlay
+        self._overlay_changed = time
+
     def reference(self, time: float) -> Pose:
         """Return the reference pose at a time in [s]."""
-        return self._trajectory.at(time - self._started)
+        pose = self._trajectory.at(time - self._started)
+        if self._overlay is None and self._last_offset is _NO_OFFSET:
+            return pose
+        (x, y, z), (dx, dy, dz) = pose.position, self._offset(time)
+        return Pose((x + dx, y + dy, z + dz), pose.quaternion)
 
     def is_finished(self, time: float) -> bool:
         """Tell whether the reference stands still at the goal from this time in [s] on."""
+        if self._overlay is not None or self._offset(time) != _NO_OFFSET:
+            return False
         return time - self._started >= self._trajectory.duration
+
+    def _offset(self, time: float) -> Vector:
+        """Return the overlay's offset, or what is left of the last one."""
+        elapsed = time - self._overlay_changed
+        if self._overlay is not None:
+            return self._overlay.offset(elapsed)
+        x, y, z = self._last_offset
+        length = sqrt(x * x + y * y + z * z)
+        left = length - FADING_SPEED * elapsed
+        if left <= 0.0:
+            return _NO_OFFSET
+        scale = left / length
+        return scale * x, scale * y, scale * z

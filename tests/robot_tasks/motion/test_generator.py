@@ -1,5 +1,7 @@
 """Tests for generator.py."""
 
+from dataclasses import dataclass
+
 import pytest
 
 from robot_tasks.geometry import TOOL_DOWN, Pose
@@ -31,3 +33,40 @@ def test_a_new_goal_starts_from_the_measured_pose_and_from_rest():
     assert generator.reference(3.0).position == pytest.approx(lagging.position)
     assert generator.reference(3.1).position == pytest.approx((0.3, 0.01 + 0.5 * 0.3 * 0.1**2, 1.0))
     assert generator.goal.position == (0.3, 1.01, 1.0)
+
+
+@dataclass(frozen=True)
+class Drift:
+    """An overlay that moves along x at a speed."""
+
+    speed: float
+
+    def offset(self, time):
+        return self.speed * time, 0.0, 0.0
+
+
+def test_an_overlay_is_added_to_the_reference_from_the_time_it_began():
+    generator = MotionGenerator(START)
+    generator.set_overlay(Drift(0.1), 2.0)
+    assert generator.reference(2.0).position == pytest.approx((0.0, 0.0, 1.0))
+    assert generator.reference(3.0).position == pytest.approx((0.1, 0.0, 1.0))
+    assert not generator.is_finished(3.0)
+
+
+def test_an_equal_overlay_goes_on_and_another_starts_afresh():
+    generator = MotionGenerator(START)
+    generator.set_overlay(Drift(0.1), 0.0)
+    generator.set_overlay(Drift(0.1), 1.0)
+    assert generator.reference(2.0).position[0] == pytest.approx(0.2)
+    generator.set_overlay(Drift(0.2), 2.0)
+    assert generator.reference(3.0).position[0] == pytest.approx(0.2)
+
+
+def test_the_offset_of_an_overlay_that_ended_fades_at_5_centimetres_per_second():
+    generator = MotionGenerator(START)
+    generator.set_overlay(Drift(0.1), 0.0)
+    generator.set_overlay(None, 1.0)
+    assert [generator.reference(t).position[0] for t in (1.0, 2.0, 2.9)] == pytest.approx([0.1, 0.05, 0.005])
+    assert not generator.is_finished(2.9)
+    assert generator.reference(3.1).position == (0.0, 0.0, 1.0)
+    assert generator.is_finished(3.1)
