@@ -11,7 +11,9 @@ from collections.abc import Mapping
 __all__ = ["obstacle_avoidance"]
 
 
-def obstacle_avoidance(configuration: Mapping[str, float], seed: int = 0) -> Mapping[str, float]:
+def obstacle_avoidance(
+    configuration: Mapping[str, float], seed: int = 0, *, as_published_code: bool = False
+) -> Mapping[str, float]:
     """Carry a tool over an engine with a KUKA iiwa 7; see `docs/robot_tasks.md`.
 
     Parameters
@@ -21,6 +23,8 @@ def obstacle_avoidance(configuration: Mapping[str, float], seed: int = 0) -> Map
         and ``mp3_threshold``, all in [m].
     seed
         Chooses the start state of the arm and where exactly engine and block stand.
+    as_published_code
+        Whether to take the choices of the published code where they differ from the paper's text.
 
     Returns
     -------
@@ -31,7 +35,9 @@ def obstacle_avoidance(configuration: Mapping[str, float], seed: int = 0) -> Map
     ------
     robot_tasks.errors.ParameterError
         If a parameter is missing, unknown, not finite or out of bounds.
+    robot_tasks.errors.SimulationError
+        If the physics broke down; the rollout has no score.
     """
     from robot_tasks.evaluation import evaluate
 
-    return evaluate("obstacle_avoidance", configuration, seed)
+    return evaluate("obstacle_avoidance", configuration, seed, as_published_code=as_published_code)

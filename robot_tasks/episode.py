@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray: TypeAlias = NDArray[np.float64]
+
+_WIDTHS: Final = {
+    "tip_positions": 3,
+    "reference_positions": 3,
+    "joint_positions": 7,
+    "commanded_forces": 3,
+    "object_poses": 7,
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,6 +31,23 @@ class ContactRecord:
     """Largest normal force of a single contact in [N]."""
     deepest_penetration: float = 0.0
     """Largest overlap in [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ForceRecord:
+    """The net contact force on the tool over an episode, measured at every physics step."""
+
+    peak: float = 0.0
+    """Largest magnitude in [N]."""
+    impulse: float = 0.0
+    """Integral of the magnitude over time in [Ns]."""
+    seconds: float = 0.0
+    """Time during which there was a force in [s]."""
+
+    @property
+    def mean(self) -> float:
+        """Mean magnitude in [N] while there was a force; 0 if there never was one."""
+        return self.impulse / self.seconds if self.seconds else 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,19 +66,28 @@ class Episode:
     """World position of the controller's reference in [m], shape (n, 3)."""
     joint_positions: FloatArray
     """Joint angles in [rad], shape (n, 7)."""
+    commanded_forces: FloatArray
+    """Feed-forward force that was commanded on top of the spring, in world axes in [N], shape (n, 3)."""
+    object_poses: FloatArray | None = None
+    """Pose x y z in [m] and quaternion w x y z of the task's object, shape (n, 7); None if it has none."""
     success_time: float | None = None
-    """When the skill succeeded in [s]; None if it never did."""
+    """When the task was achieved in [s]; None if it never was."""
     simulated_seconds: float
     """Time in [s] up to which physics ran."""
     clearance: float = float("inf")
     """Smallest distance of arm or tool to the obstacle in [m]; negative when they overlapped."""
     contact: ContactRecord = field(default_factory=ContactRecord)
     """Summary of unwanted contacts."""
+    tool_contact: ForceRecord = field(default_factory=ForceRecord)
+    """Summary of the contact force on the tool, wanted or not."""
+    interventions: int = 0
+    """How often an operator stopped the robot."""
 
     def __post_init__(self) -> None:
         n = len(self.times)
-        for name, width in (("tip_positions", 3), ("reference_positions", 3), ("joint_positions", 7)):
-            shape = getattr(self, name).shape
+        for name, width in _WIDTHS.items():
+            array = getattr(self, name)
+            shape = (n, width) if array is None else array.shape
             if shape != (n, width):
                 raise ValueError(f"Episode.{name}: expected shape {(n, width)} for {n} times, got {shape}")
 

@@ -12,7 +12,7 @@ from robot_tasks.episode import Episode
 from robot_tasks.errors import UnknownNameError
 from robot_tasks.rollout import rollout
 from robot_tasks.simulation import Simulation
-from robot_tasks.tasks import TASKS, Task
+from robot_tasks.tasks import PUBLISHED, TASKS, Task
 
 
 class _WarmSimulations(threading.local):
@@ -30,8 +30,8 @@ class _WarmSimulations(threading.local):
 _SIMULATIONS: Final = _WarmSimulations()
 
 
-def find_task(name: str) -> Task:
-    """Look up a task by name.
+def find_task(name: str, *, as_published_code: bool = False) -> Task:
+    """Look up a task by name: as the paper means it, or as its published code computes it.
 
     Raises
     ------
@@ -40,10 +40,12 @@ def find_task(name: str) -> Task:
     """
     if name not in TASKS:
         raise UnknownNameError("task", name, TASKS)
-    return TASKS[name]
+    return (PUBLISHED if as_published_code else TASKS)[name]
 
 
-def evaluate(task_name: str, configuration: Mapping[str, float], seed: int = 0) -> dict[str, float]:
+def evaluate(
+    task_name: str, configuration: Mapping[str, float], seed: int = 0, *, as_published_code: bool = False
+) -> dict[str, float]:
     """Run one rollout and measure it.
 
     Equal arguments give bit-identical results on one machine, whatever ran before.
@@ -56,6 +58,9 @@ def evaluate(task_name: str, configuration: Mapping[str, float], seed: int = 0) 
         Value of every parameter of the task.
     seed
         Chooses start state and offsets of bodies. The same seed means the same circumstances for every configuration.
+    as_published_code
+        Whether to take the choices of the published code where they differ from the paper's text; see
+        `docs/robot_tasks.md`.
 
     Returns
     -------
@@ -68,8 +73,10 @@ def evaluate(task_name: str, configuration: Mapping[str, float], seed: int = 0) 
         If there is no such task.
     ParameterError
         If the configuration does not fit the task.
+    SimulationError
+        If the physics diverged or bodies got into each other: the rollout means nothing and has no score.
     """
-    task = find_task(task_name)
+    task = find_task(task_name, as_published_code=as_published_code)
     parameters = task.check(configuration)
     variation = task.randomization.sample(np.random.default_rng(seed))
     return measure(task, rollout(task, parameters, variation, _SIMULATIONS.get(task.scene)))
@@ -88,13 +95,18 @@ def summarize(episode: Episode) -> dict[str, float]:
     Returns
     -------
     dict
-        ``success``: 1 if the skill ever succeeded, else 0. ``time_to_success`` in [s]: the length of the episode if it
-        never did. ``touches``: contacts of arm or tool with untouchable things, at least 0.1 s apart.
+        ``success``: 1 if the task was achieved, else 0. ``time_to_success`` in [s]: the length of the episode if it
+        never was. ``touches``: contacts of arm or tool with untouchable things, at least 0.1 s apart.
         ``contact_seconds``: their total time in [s]. ``peak_contact_force``: largest normal force among them in [N].
         ``deepest_penetration``: their largest overlap in [m]. ``clearance``: smallest distance of arm or tool to the
-        obstacle in [m], at most 0.5, sampled every 0.1 s. ``simulated_seconds``: time after which nothing moved in [s].
+        obstacle, if there is one, in [m], at most 0.5, sampled every 0.1 s. ``tool_peak_force``, ``tool_mean_force``
+        in [N] and ``tool_impulse`` in [Ns]: magnitude of the net contact force on the tool, wanted or not; the mean
+        over the time in contact. ``commanded_impulse``: integral of the commanded force's magnitude in [Ns].
+        ``simulated_seconds``: time after which nothing moved in [s].
     """
-    contact = episode.contact
+    contact, tool = episode.contact, episode.tool_contact
+    clearance = {} if np.isinf(episode.clearance) else {"clearance": episode.clearance}
+    commanded = np.sqrt(np.square(episode.commanded_forces[1:]).sum(axis=1))  # (n_steps,)
     duration = float(episode.times[-1])
     return {
         "success": float(episode.is_success),
@@ -103,6 +115,10 @@ def summarize(episode: Episode) -> dict[str, float]:
         "contact_seconds": contact.seconds,
         "peak_contact_force": contact.peak_force,
         "deepest_penetration": contact.deepest_penetration,
-        "clearance": episode.clearance,
+        **clearance,
+        "tool_peak_force": tool.peak,
+        "tool_mean_force": tool.mean,
+        "tool_impulse": tool.impulse,
+        "commanded_impulse": float(commanded.sum()) * duration / episode.n_steps,
         "simulated_seconds": episode.simulated_seconds,
     }

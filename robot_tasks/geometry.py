@@ -11,6 +11,9 @@ from typing import NamedTuple, TypeAlias
 Vector: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
 
+Stiffness: TypeAlias = tuple[float, float, float, float]
+"""Stiffness along x, y, z in [N/m] and about every axis in [Nm/rad]."""
+
 TOOL_DOWN: Quaternion = (0.0, 1.0, 0.0, 0.0)
 """Half a turn about world x: the tool points straight down and its x axis along world x."""
 

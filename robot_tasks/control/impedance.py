@@ -16,15 +16,21 @@ from math import cos, sin, sqrt
 from typing import Final
 
 from robot_tasks.control.ramp import Ramp
-from robot_tasks.geometry import Pose, Quaternion, Vector
+from robot_tasks.geometry import Pose, Quaternion, Stiffness, Vector
 from robot_tasks.simulation import N_JOINTS, Simulation
 
-STIFFNESS: Final = (400.0, 400.0, 400.0, 50.0)
-"""Default stiffness along x, y, z in [N/m] and about every axis in [Nm/rad]."""
+STIFFNESS: Final[Stiffness] = (400.0, 400.0, 400.0, 50.0)
+"""Stiffness at the start of an episode."""
+LEAST_DAMPING: Final = 20.0
+"""Damping in [Ns/m] of an axis whose stiffness is zero or small, for which 2 sqrt(K) would be none.
+
+An axis under pure force control would otherwise be braked by the joints alone: it would hit the work piece at 0.3 m/s
+under 3 N and at 0.7 m/s under 20 N. With it a force F moves the free arm at F / 20 m/s at most.
+"""
 STIFFNESS_RATE: Final = 500.0
 """Largest change of stiffness in [N/m] and [Nm/rad] per second."""
-LEASH: Final = 0.25
-"""Largest distance in [m] from tip to reference: a farther reference is pulled in, so the spring gives at most 100 N.
+SPRING_FORCE: Final = 100.0
+"""Largest force of the spring in [N]: a reference that asks for more is pulled in, to 0.25 m at 400 N/m.
 
 An arm stuck at an obstacle while its reference moves on would otherwise be loaded until it buckles and whips free. In
 free motion the lag stays below 0.08 m.
@@ -39,7 +45,7 @@ POSTURE_STIFFNESS: Final = 10.0
 POSTURE_DAMPING: Final = 4.0
 """Damping of the posture in [Nms/rad]."""
 
-TIP: Final = "tip"
+TIP: Final = "tool_tip"
 """Site whose pose is controlled."""
 
 _AXES: Final = ("impedance_x", "impedance_y", "impedance_z")
@@ -73,22 +79,32 @@ class ImpedanceController:
         self._write_gains()
 
     @property
+    def force(self) -> tuple[float, ...]:
+        """The feed-forward force commanded at present along x, y, z in [N]."""
+        return self._force.value
+
+    @property
     def is_settled(self) -> bool:
         """Whether stiffness and force have reached what was asked for."""
         return self._stiffness.is_settled and self._force.is_settled
 
     def aim_stiffness(self, stiffness: Sequence[float]) -> None:
-        """Ask for a stiffness along x, y, z in [N/m] and about every axis in [Nm/rad]; damping follows as 2 sqrt(K)."""
-        self._stiffness.aim(stiffness)
+        """Ask for a stiffness along x, y, z in [N/m] and about every axis in [Nm/rad].
+
+        Damping follows as 2 sqrt(K), along x, y, z at least `LEAST_DAMPING`.
+        """
+        if stiffness is not self._stiffness.target:
+            self._stiffness.aim(stiffness)
 
     def aim_force(self, force: Sequence[float]) -> None:
         """Ask for a feed-forward force along x, y, z in world axes in [N]."""
-        self._force.aim(force)
+        if force is not self._force.target:
+            self._force.aim(force)
 
     def update(self, reference: Pose, seconds: float) -> None:
         """Write the commands of one tick that lasts a time in [s]."""
         ctrl = self._ctrl
-        position = on_leash(reference.position, self._tip.tolist())
+        position = within_reach(reference.position, self._tip.tolist(), self._stiffness.value)
         if position != self._position:
             self._position = ctrl[0], ctrl[2], ctrl[4] = position  # one by one: faster than a slice at this length
         if reference.quaternion is not self._quaternion:
@@ -105,19 +121,20 @@ class ImpedanceController:
         """Write stiffness and damping where MuJoCo's pid and orientation actuators keep them."""
         *axes, rotation = self._stiffness.value
         for index, k in zip(self._axis_ids, axes, strict=True):
-            self._model.actuator_biasprm[index, 1:3] = -k, -2.0 * sqrt(k)
+            self._model.actuator_biasprm[index, 1:3] = -k, -max(2.0 * sqrt(k), LEAST_DAMPING)
         self._model.actuator_gainprm[self._rotation_id, 0] = rotation
         self._model.actuator_biasprm[self._rotation_id, 1:3] = -rotation, -2.0 * sqrt(rotation)
 
 
-def on_leash(reference: Vector, tip: Sequence[float]) -> Vector:
-    """Pull a reference position towards the tip until it is within `LEASH` of it."""
+def within_reach(reference: Vector, tip: Sequence[float], stiffness: Sequence[float]) -> Vector:
+    """Pull a reference position in [m] towards the tip until the spring between them gives at most `SPRING_FORCE`."""
     x, y, z = tip
     dx, dy, dz = reference[0] - x, reference[1] - y, reference[2] - z
-    squared_distance = dx * dx + dy * dy + dz * dz
-    if squared_distance <= LEASH * LEASH:
+    fx, fy, fz = stiffness[0] * dx, stiffness[1] * dy, stiffness[2] * dz
+    squared_force = fx * fx + fy * fy + fz * fz
+    if squared_force <= SPRING_FORCE * SPRING_FORCE:
         return reference
-    scale = LEASH / sqrt(squared_distance)
+    scale = SPRING_FORCE / sqrt(squared_force)
     return x + scale * dx, y + scale * dy, z + scale * dz
 
 

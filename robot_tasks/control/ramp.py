@@ -26,7 +26,7 @@ class Ramp:
 
     def aim(self, target: Sequence[float]) -> None:
         """Set a new target of the same length."""
-        self.target = tuple(target)
+        self.target = target if isinstance(target, tuple) else tuple(target)
         self.is_settled = self.target == self.value
 
     def advance(self, seconds: float) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import Enum
-from typing import Final
+from typing import Final, Protocol
 
-from robot_tasks.geometry import Pose, Vector
+from robot_tasks.geometry import Pose, Stiffness, Vector
+from robot_tasks.motion.overlay import Overlay
 
 
 class Status(Enum):
@@ -27,14 +28,45 @@ FAILURE: Final = Status.FAILURE
 # Looking up a member in the enumeration costs as much as the rest of a leaf's tick.
 
 
+DEFAULT_STIFFNESS: Final[Stiffness] = (400.0, 400.0, 400.0, 50.0)
+"""Stiffness while no behaviour asks for another."""
+NO_FORCE: Final[Vector] = (0.0, 0.0, 0.0)
+
+
+class World(Protocol):
+    """Where things are, as far as the robot can tell."""
+
+    def pose_of(self, name: str) -> Pose:
+        """Return the measured pose of a body or site of the scene."""
+        ...
+
+
 @dataclass(slots=True, kw_only=True)
 class SkillContext:
-    """What behaviours read from the robot and what they ask of it."""
+    """What behaviours read from the robot and what they ask of it.
+
+    A demand for stiffness, force or overlay lasts for one tick: a behaviour that runs repeats it at every tick, and
+    one that was halted asks for nothing more.
+    """
 
     tip: Vector
     """Measured position of the tool tip in world axes, in [m]."""
+    world: World
+    """Measured poses of everything else."""
     goal: Pose
     """Pose to move to. It stays until a behaviour sets another."""
+    stiffness: Stiffness = DEFAULT_STIFFNESS
+    """Stiffness wanted."""
+    force: Vector = NO_FORCE
+    """Force wanted on top of the spring, in world axes in [N]."""
+    overlay: Overlay | None = None
+    """Motion wanted on top of the motion to the goal."""
+
+    def forget_demands(self) -> None:
+        """Return to the default stiffness, no force and no overlay; the goal stays."""
+        self.stiffness = DEFAULT_STIFFNESS
+        self.force = NO_FORCE
+        self.overlay = None
 
 
 class Behaviour(ABC):
@@ -48,6 +80,16 @@ class Behaviour(ABC):
 
     def __init__(self) -> None:
         self.status = IDLE
+
+    @property
+    def children(self) -> tuple[Behaviour, ...]:
+        """The nodes below this one; leaves have none."""
+        return ()
+
+    @property
+    def label(self) -> str:
+        """What the node is, in a drawing of the tree."""
+        return type(self).__name__
 
     def tick(self, context: SkillContext) -> Status:
         """Advance by one tick, starting the behaviour if it is not running."""

@@ -21,16 +21,21 @@ class Composite(Behaviour):
         At least one behaviour, in the order in which they are ticked.
     """
 
-    __slots__ = ("children",)
+    __slots__ = ("_children",)
 
     def __init__(self, *children: Behaviour) -> None:
         super().__init__()
         if not children:
             raise ValueError(f"{type(self).__name__} needs at least one child, got none")
-        self.children = children
+        self._children = children
+
+    @property
+    def children(self) -> tuple[Behaviour, ...]:
+        """The nodes below this one, in the order in which they are ticked."""
+        return self._children
 
     def _terminate(self, context: SkillContext, status: Status) -> None:
-        _halt(self.children, context)
+        _halt(self._children, context)
 
 
 class Serial(Composite):
@@ -39,10 +44,10 @@ class Serial(Composite):
     __slots__ = ()
 
     def _update(self, context: SkillContext) -> Status:
-        for position, child in enumerate(self.children, start=1):
+        for position, child in enumerate(self._children, start=1):
             status = child.tick(context)
             if status is RUNNING:
-                _halt(self.children[position:], context)
+                _halt(self._children[position:], context)
             if status is not SUCCESS:
                 return status
         return SUCCESS
@@ -58,8 +63,8 @@ class _Starred(Composite):
         self._current = 0
 
     def _update(self, context: SkillContext) -> Status:
-        while self._current < len(self.children):
-            status = self.children[self._current].tick(context)
+        while self._current < len(self._children):
+            status = self._children[self._current].tick(context)
             if status is not self._passes_on:
                 return status
             self._current += 1
@@ -79,10 +84,10 @@ class Selector(Composite):
     __slots__ = ()
 
     def _update(self, context: SkillContext) -> Status:
-        for position, child in enumerate(self.children, start=1):
+        for position, child in enumerate(self._children, start=1):
             status = child.tick(context)
             if status is not FAILURE:
-                _halt(self.children[position:], context)
+                _halt(self._children[position:], context)
                 return status
         return FAILURE
 
@@ -100,7 +105,7 @@ class ParallelFs(Composite):
     __slots__ = ()
 
     def _update(self, context: SkillContext) -> Status:
-        for child in self.children:
+        for child in self._children:
             status = child.tick(context)
             if status is not RUNNING:
                 return status
@@ -113,7 +118,7 @@ class ParallelFf(Composite):
     __slots__ = ("_waiting",)
 
     def _initialise(self, context: SkillContext) -> None:
-        self._waiting = list(self.children)
+        self._waiting = list(self._children)
 
     def _update(self, context: SkillContext) -> Status:
         still_running = []
@@ -136,7 +141,7 @@ class NoFail(Composite):
         super().__init__(child)
 
     def _update(self, context: SkillContext) -> Status:
-        status = self.children[0].tick(context)
+        status = self._children[0].tick(context)
         return SUCCESS if status is FAILURE else status
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Final, Literal, TypeAlias
 
-from robot_tasks.geometry import Pose, Vector, distance
+from robot_tasks.geometry import Pose, Stiffness, Vector, distance
+from robot_tasks.motion.overlay import Overlay
 from robot_tasks.skills.behaviour import FAILURE, RUNNING, SUCCESS, Behaviour, Condition, SkillContext, Status
 
 Axis: TypeAlias = Literal["x", "y", "z"]
@@ -27,8 +28,89 @@ class SetGoalPose(Behaviour):
         super().__init__()
         self.pose = pose
 
+    @property
+    def label(self) -> str:
+        """The pose asked for."""
+        return f"SetGoalPose {_point(self.pose.position)}"
+
     def _update(self, context: SkillContext) -> Status:
         context.goal = self.pose
+        return RUNNING
+
+
+class ChangeStiffness(Behaviour):
+    """Ask for a stiffness and keep running.
+
+    Parameters
+    ----------
+    stiffness
+        Along x, y, z in [N/m] and about every axis in [Nm/rad].
+    """
+
+    __slots__ = ("stiffness",)
+
+    def __init__(self, stiffness: Stiffness) -> None:
+        super().__init__()
+        self.stiffness = stiffness
+
+    @property
+    def label(self) -> str:
+        """The stiffness asked for."""
+        x, y, z, rotation = self.stiffness
+        return f"ChangeStiffness ({x:g}, {y:g}, {z:g}) N/m, {rotation:g} Nm/rad"
+
+    def _update(self, context: SkillContext) -> Status:
+        context.stiffness = self.stiffness
+        return RUNNING
+
+
+class ApplyForce(Behaviour):
+    """Ask for a force on top of the spring's and keep running.
+
+    Parameters
+    ----------
+    force
+        In world axes in [N].
+    """
+
+    __slots__ = ("force",)
+
+    def __init__(self, force: Vector) -> None:
+        super().__init__()
+        self.force = force
+
+    @property
+    def label(self) -> str:
+        """The force asked for."""
+        return f"ApplyForce {_point(self.force)} N"
+
+    def _update(self, context: SkillContext) -> Status:
+        context.force = self.force
+        return RUNNING
+
+
+class OverlayMotion(Behaviour):
+    """Ask for a motion on top of the motion to the goal and keep running.
+
+    Parameters
+    ----------
+    overlay
+        The motion. Asking again for an equal one lets it go on.
+    """
+
+    __slots__ = ("overlay",)
+
+    def __init__(self, overlay: Overlay) -> None:
+        super().__init__()
+        self.overlay = overlay
+
+    @property
+    def label(self) -> str:
+        """The motion asked for."""
+        return f"OverlayMotion {self.overlay}"
+
+    def _update(self, context: SkillContext) -> Status:
+        context.overlay = self.overlay
         return RUNNING
 
 
@@ -49,6 +131,11 @@ class PositionDistance(Behaviour):
         super().__init__()
         self.target = target
         self.threshold = threshold
+
+    @property
+    def label(self) -> str:
+        """Where the tip is awaited."""
+        return f"PositionDistance to {_point(self.target)} < {self.threshold:g} m"
 
     def _update(self, context: SkillContext) -> Status:
         return SUCCESS if distance(context.tip, self.target) < self.threshold else RUNNING
@@ -72,6 +159,11 @@ class CoordinateBelow(Condition):
         self._index = _AXES.index(axis)
         self.limit = limit
 
+    @property
+    def label(self) -> str:
+        """The question asked."""
+        return f"{type(self).__name__} {_AXES[self._index]}, {self.limit:g} m"
+
     def _update(self, context: SkillContext) -> Status:
         return SUCCESS if context.tip[self._index] < self.limit else FAILURE
 
@@ -83,3 +175,8 @@ class CoordinateAtLeast(CoordinateBelow):
 
     def _update(self, context: SkillContext) -> Status:
         return FAILURE if context.tip[self._index] < self.limit else SUCCESS
+
+
+def _point(vector: Vector) -> str:
+    x, y, z = vector
+    return f"({x:g}, {y:g}, {z:g})"

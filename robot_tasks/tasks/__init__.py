@@ -10,5 +10,9 @@ from robot_tasks.tasks.base import Parameter, Task
 from robot_tasks.tasks.obstacle_avoidance import OBSTACLE_AVOIDANCE
 
 TASKS: Final[Mapping[str, Task]] = {task.name: task for task in (OBSTACLE_AVOIDANCE,)}
+"""The tasks as the paper means them."""
 
-__all__ = ["TASKS", "Parameter", "Task"]
+PUBLISHED: Final[Mapping[str, Task]] = {**TASKS}
+"""The same tasks with the choices of the published code, where these differ and change an objective."""
+
+__all__ = ["PUBLISHED", "TASKS", "Parameter", "Task"]

@@ -10,6 +10,7 @@ from robot_tasks.errors import ParameterError
 from robot_tasks.randomization import Randomization
 from robot_tasks.rewards import RewardTerm
 from robot_tasks.skills import Behaviour
+from robot_tasks.skills.conditions import Relation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,10 +44,12 @@ class Task:
     objectives: Mapping[str, tuple[RewardTerm, ...]]
     """Objectives, all to be maximized: each is the sum of its reward terms."""
     randomization: Randomization
-    obstacle: str
-    """Geom to which the clearance is measured."""
-    untouchable: frozenset[str]
-    """Geoms that arm and tool should not touch."""
+    obstacle: str | None = None
+    """Geom to which the clearance is measured, if any."""
+    object_body: str | None = None
+    """Free body whose pose is recorded, if any."""
+    final_condition: Relation | None = None
+    """What is to hold at the end: success is its holding from some time on. None: success is that of the skill."""
 
     @property
     def terms(self) -> tuple[RewardTerm, ...]:

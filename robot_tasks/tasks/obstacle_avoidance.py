@@ -78,5 +78,4 @@ OBSTACLE_AVOIDANCE: Final = Task(
         shifts=(BodyShift(body="engine", sigma=0.02), BodyShift(body="block", sigma=0.007)),
     ),
     obstacle="engine",
-    untouchable=frozenset({"engine", "table", "robot_table"}),
 )

@@ -27,7 +27,7 @@ def simulation() -> Simulation:
 
 @pytest.fixture
 def make_episode() -> Callable[..., Episode]:
-    def make(tip_positions, *, success_time=None, **fields) -> Episode:
+    def make(tip_positions, *, success_time=None, commanded_forces=None, **fields) -> Episode:
         tips = np.asarray(tip_positions, dtype=float)
         n = len(tips)
         return Episode(
@@ -35,6 +35,7 @@ def make_episode() -> Callable[..., Episode]:
             tip_positions=tips,
             reference_positions=tips,
             joint_positions=np.zeros((n, 7)),
+            commanded_forces=np.zeros((n, 3)) if commanded_forces is None else np.asarray(commanded_forces),
             success_time=success_time,
             simulated_seconds=(n - 1) * 0.1,
             **fields,

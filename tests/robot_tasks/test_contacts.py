@@ -5,6 +5,11 @@ import numpy as np
 import pytest
 
 from robot_tasks.contacts import Clearance, ContactMonitor
+from robot_tasks.control import ImpedanceController
+from robot_tasks.episode import ContactRecord, ForceRecord
+from robot_tasks.errors import SimulationError
+from robot_tasks.geometry import Pose
+from robot_tasks.simulation import TICK
 
 HIGH = (0.48, 1.52, -0.30, -0.74, 1.46, 1.35, -1.15)
 
@@ -16,7 +21,7 @@ def tool_over_table(simulation):
     def place(height: float):
         simulation.reset()
         simulation.place_arm(HIGH)
-        lowest = simulation.site_position("tip")[2] - 0.0225 * np.sin(np.radians(0.12))
+        lowest = simulation.site_position("tool_tip")[2] - 0.0225 * np.sin(np.radians(0.12))
         simulation.shift_body("table", (0.0, 0.0, lowest - height - 0.6))
         simulation.place_arm(HIGH)
         return simulation
@@ -24,52 +29,80 @@ def tool_over_table(simulation):
     return place
 
 
-def test_a_far_geom_is_not_near(tool_over_table):
-    assert not ContactMonitor(tool_over_table(0.05), ["table"]).is_near()
+def settle(simulation, n_ticks=1):
+    """Hold the tool where it is, watched from now on, for some ticks of ten steps."""
+    monitor = ContactMonitor(simulation)
+    controller, pose = ImpedanceController(simulation), simulation.pose_of("tool_tip")
+    for _ in range(n_ticks):
+        controller.update(pose, TICK)
+        mujoco.mj_step(simulation.model, simulation.data, 10)
+        monitor.observe()
+    return monitor
 
 
-def test_a_geom_within_the_gap_is_near_but_not_touched(tool_over_table):
-    monitor = ContactMonitor(tool_over_table(0.01), ["table"])
-    assert monitor.is_near()
-    monitor.observe()
-    assert monitor.record().touches == 0
+def test_a_far_geom_is_not_touched(tool_over_table):
+    monitor = settle(tool_over_table(0.01), n_ticks=3)
+    assert monitor.touch_record() == ContactRecord()
+    assert monitor.tool_record() == ForceRecord()
 
 
 def test_an_overlap_is_a_touch_with_force_and_depth(tool_over_table):
-    monitor = ContactMonitor(tool_over_table(-0.001), ["table"])
-    monitor.observe()
-    record = monitor.record()
+    monitor = settle(tool_over_table(-0.001))
+    record = monitor.touch_record()
     assert record.touches == 1
-    assert record.seconds == 0.002
+    assert 0.002 <= record.seconds <= 0.02
     assert record.peak_force > 1.0
     assert record.deepest_penetration == pytest.approx(0.001, abs=2e-4)
 
 
-def test_a_geom_that_may_be_touched_does_not_count(tool_over_table):
-    monitor = ContactMonitor(tool_over_table(-0.001), ["engine"])
+def test_a_tool_pulled_onto_the_table_presses_with_the_force_of_the_spring(tool_over_table):
+    simulation = tool_over_table(0.0)
+    controller, (position, quaternion) = ImpedanceController(simulation), simulation.pose_of("tool_tip")
+    below = Pose((position[0], position[1], position[2] - 0.02), quaternion)  # 20 mm x 400 N/m = 8 N
+    for _ in range(200):
+        controller.update(below, TICK)
+        mujoco.mj_step(simulation.model, simulation.data, 10)
+    monitor = ContactMonitor(simulation)
     monitor.observe()
-    assert monitor.record().touches == 0
+    assert monitor.tool_record().mean == pytest.approx(8.0, rel=0.02)
+    assert monitor.tool_record().impulse == pytest.approx(8.0 * 0.02, rel=0.02)
+    assert monitor.tool_record().seconds == pytest.approx(0.02)
 
 
 def test_contacts_close_in_time_are_one_touch_and_later_ones_another(tool_over_table):
     simulation = tool_over_table(-0.001)
-    monitor = ContactMonitor(simulation, ["table"])
-    for time in (0.0, 0.05, 0.14, 0.3):
+    monitor = ContactMonitor(simulation)
+    readings = simulation.sensor_history("touch_table")
+    simulation.sensor_history("deepest")[:] = -0.001
+    for time in (0.02, 0.08, 0.16, 0.34):
+        readings[:, 3] = -0.001
         simulation.data.time = time
         monitor.observe()
-    assert monitor.record().touches == 2
-    assert monitor.record().seconds == pytest.approx(4 * 0.002)
+    assert monitor.touch_record().touches == 2
+    assert monitor.touch_record().seconds == pytest.approx(4 * 0.02)
 
 
 def test_only_a_present_contact_is_prolonged(tool_over_table):
     simulation = tool_over_table(-0.001)
-    monitor = ContactMonitor(simulation, ["table"])
+    simulation.sensor_history("touch_table")[:, 3] = -0.001
+    simulation.sensor_history("deepest")[:] = -0.001
+    simulation.sensor_history("tool_force")[:] = (0.0, 3.0, 4.0)
+    monitor = ContactMonitor(simulation)
     monitor.observe()
-    assert monitor.record(held=2.0).seconds == pytest.approx(2.002)
-    simulation.shift_body("table", (0.0, 0.0, 0.0))
-    mujoco.mj_forward(simulation.model, simulation.data)
+    assert monitor.touch_record(held=2.0).seconds == pytest.approx(2.02)
+    assert monitor.tool_record(held=2.0).impulse == pytest.approx(5.0 * 2.02)
+    simulation.sensor_history("deepest")[:] = 0.001
     monitor.observe()
-    assert monitor.record(held=2.0).seconds == pytest.approx(0.002)
+    assert monitor.touch_record(held=2.0).seconds == pytest.approx(0.02)
+    assert monitor.tool_record(held=2.0).impulse == pytest.approx(5.0 * 0.02)
+
+
+def test_bodies_that_are_inside_each_other_are_an_error(tool_over_table):
+    simulation = tool_over_table(-0.03)
+    monitor = ContactMonitor(simulation)
+    mujoco.mj_step(simulation.model, simulation.data, 10)
+    with pytest.raises(SimulationError, match=r"two bodies overlap by \d\d\.\d mm, 10 at most mean anything"):
+        monitor.observe()
 
 
 def test_clearance_is_the_distance_of_the_nearest_part(tool_over_table):

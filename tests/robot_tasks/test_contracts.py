@@ -29,15 +29,17 @@ def test_every_task_has_an_evaluator_that_pickles_by_name(task):
 @every_task
 def test_every_element_of_a_scene_has_a_name(task):
     simulation = Simulation.from_scene(task.scene)
-    for kind in ("body", "joint", "geom", "site", "actuator", "camera"):
+    for kind in ("body", "joint", "geom", "site", "actuator", "camera", "sensor"):
         assert all(simulation.names(kind))
 
 
 @every_task
 def test_a_task_refers_only_to_what_its_scene_has(task):
     simulation = Simulation.from_scene(task.scene)
-    for geom in {task.obstacle, *task.untouchable}:
-        simulation.id_of("geom", geom)
+    if task.obstacle:
+        simulation.id_of("geom", task.obstacle)
+    if task.object_body:
+        simulation.place_body(task.object_body, simulation.pose_of(task.object_body))
     for shift in task.randomization.shifts:
         body = simulation.id_of("body", shift.body)
         assert simulation.model.body_weldid[body] == 0

@@ -34,6 +34,10 @@ def test_the_evaluator_reports_objectives_terms_and_summary():
         "peak_contact_force",
         "deepest_penetration",
         "clearance",
+        "tool_peak_force",
+        "tool_mean_force",
+        "tool_impulse",
+        "commanded_impulse",
         "simulated_seconds",
     ]
 

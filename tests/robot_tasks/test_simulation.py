@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from robot_tasks.errors import SimulationError, UnknownNameError
-from robot_tasks.simulation import Simulation
+from robot_tasks.simulation import TICK, Simulation
 
 # Joint angles; tip position in m; tilt of the tool from straight down and yaw of its x axis in degrees, as published.
 START_STATES = {
@@ -30,8 +30,8 @@ START_STATES = {
 def test_forward_kinematics_agrees_with_the_published_table(simulation, joints, tip, tilt, yaw):
     simulation.reset()
     simulation.place_arm([float(angle) for angle in joints.split()])
-    matrix = simulation.data.site_xmat[simulation.id_of("site", "tip")].reshape(3, 3)
-    assert simulation.site_position("tip") == pytest.approx([float(x) for x in tip.split()], abs=1e-4)
+    matrix = simulation.data.site_xmat[simulation.id_of("site", "tool_tip")].reshape(3, 3)
+    assert simulation.site_position("tool_tip") == pytest.approx([float(x) for x in tip.split()], abs=1e-4)
     assert np.degrees(np.arccos(-matrix[2, 2])) == pytest.approx(tilt, abs=0.02)
     assert np.degrees(np.arctan2(matrix[1, 0], matrix[0, 0])) == pytest.approx(yaw, abs=0.02)
 
@@ -40,10 +40,10 @@ def test_forward_kinematics_of_the_zero_configuration(simulation):
     simulation.reset()
     assert not simulation.data.qpos.any()
     simulation.place_arm([0.0] * 7)
-    assert simulation.site_position("tip") == pytest.approx([-0.4705, -0.7371, 1.6137], abs=1e-4)
+    assert simulation.site_position("tool_tip") == pytest.approx([-0.4705, -0.7371, 1.6137], abs=1e-4)
 
 
-@pytest.mark.parametrize("kind", ["body", "joint", "geom", "site", "actuator", "camera"])
+@pytest.mark.parametrize("kind", ["body", "joint", "geom", "site", "actuator", "camera", "sensor"])
 def test_a_missing_name_lists_those_present(simulation, kind):
     with pytest.raises(UnknownNameError, match=f"unknown {kind} 'nose'. Known: .*{simulation.names(kind)[0]}"):
         simulation.id_of(kind, "nose")
@@ -57,7 +57,47 @@ def test_a_missing_scene_lists_those_present():
 def test_site_quaternion_of_a_tool_pointing_down_is_half_a_turn_about_x(simulation):
     simulation.reset()
     simulation.place_arm([0.48, 1.52, -0.30, -0.74, 1.46, 1.35, -1.15])
-    assert np.abs(simulation.site_quaternion("tip")) == pytest.approx([0.0, 1.0, 0.0, 0.0], abs=2e-3)
+    assert np.abs(simulation.site_quaternion("tool_tip")) == pytest.approx([0.0, 1.0, 0.0, 0.0], abs=2e-3)
+
+
+def test_poses_of_bodies_and_sites_are_the_present_ones(simulation):
+    simulation.reset()
+    simulation.place_arm([0.48, 1.52, -0.30, -0.74, 1.46, 1.35, -1.15])
+    assert simulation.pose_of("engine").position == pytest.approx((-0.52, 0.3, 0.751))
+    assert simulation.pose_of("tool_tip").position == pytest.approx(simulation.site_position("tool_tip"))
+    assert simulation.pose_of("tool_tip").quaternion == pytest.approx(simulation.site_quaternion("tool_tip"))
+    with pytest.raises(UnknownNameError, match=r"unknown body or site 'engin'. .* Did you mean 'engine'"):
+        simulation.pose_of("engin")
+
+
+def test_only_a_free_body_can_be_placed(simulation):
+    with pytest.raises(ValueError, match="body 'engine' is not free to be placed anywhere"):
+        simulation.place_body("engine", simulation.pose_of("engine"))
+
+
+@pytest.mark.parametrize("timestep", [None, 0.0005, 0.001])
+def test_the_history_of_a_sensor_holds_every_step_of_a_tick_in_order(timestep):
+    simulation = Simulation.from_scene("obstacle_avoidance.xml", timestep=timestep)
+    simulation.reset()
+    simulation.place_arm([0.48, 1.52, -0.30, -0.74, 1.46, 1.35, -1.15])
+    simulation.shift_body("table", (0.0, 0.0, 0.155))  # the table is pushed 3 mm into the tool
+    mujoco.mj_forward(simulation.model, simulation.data)
+    model, data, deepest = simulation.model, simulation.data, []
+    n_steps = round(TICK / model.opt.timestep)
+    history = simulation.sensor_history("deepest")
+    for _ in range(3):  # ticks; deepest ends as the list of the last one's readings
+        deepest = []
+        for _ in range(n_steps):
+            mujoco.mj_step(model, data)
+            deepest.append(data.sensor("deepest").data.item())
+    assert len(set(deepest)) == n_steps
+    assert history[:, 0].tolist() == deepest
+
+
+def test_a_history_of_another_length_than_a_tick_is_refused(simulation, monkeypatch):
+    monkeypatch.setattr(simulation.model.opt, "timestep", 0.001)
+    with pytest.raises(ValueError, match="sensor 'deepest' keeps 10 samples; a tick has 20"):
+        simulation.sensor_history("deepest")
 
 
 def test_reset_restores_bodies_gains_and_state():

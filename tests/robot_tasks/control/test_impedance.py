@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from robot_tasks.control.impedance import POSTURE, ImpedanceController, on_leash, posture_torque, self_motion
+from robot_tasks.control.impedance import POSTURE, ImpedanceController, posture_torque, self_motion, within_reach
 from robot_tasks.geometry import Pose
 
 START = (0.56, 0.08, -0.15, -1.72, 1.07, 1.41, -0.69)
@@ -18,10 +18,10 @@ class Arm:
         simulation.reset()
         simulation.place_arm(START)
         self.simulation = simulation
-        self.tip = simulation.site_position("tip")
-        self.pose = Pose(tuple(self.tip.tolist()), simulation.site_quaternion("tip"))
+        self.tip = simulation.site_position("tool_tip")
+        self.pose = Pose(tuple(self.tip.tolist()), simulation.site_quaternion("tool_tip"))
         self.controller = ImpedanceController(simulation)
-        self.tool = simulation.id_of("body", "tool")
+        self.tool = simulation.id_of("body", "tool_body")
 
     def run(self, seconds, push=(0.0, 0.0, 0.0)):
         model, data = self.simulation.model, self.simulation.data
@@ -68,7 +68,7 @@ def test_the_tip_does_not_drift_while_the_elbow_moves_to_its_posture(arm):
 
 def test_the_tip_keeps_its_orientation_under_a_push(arm):
     arm.run(4.0, (10.0, 10.0, 0.0))
-    quaternion = arm.simulation.site_quaternion("tip")
+    quaternion = arm.simulation.site_quaternion("tool_tip")
     assert abs(np.dot(quaternion, arm.pose.quaternion)) == pytest.approx(1.0, abs=1e-6)
 
 
@@ -87,7 +87,7 @@ def test_joint_torques_stay_within_the_effort_limits(arm):
         assert (np.abs(arm.simulation.data.qfrc_actuator) <= limits + 1e-9).all()
 
 
-def test_a_far_reference_pulls_no_harder_than_the_leash_allows(arm):
+def test_a_far_reference_pulls_with_no_more_than_100_newton(arm):
     arm.pose = Pose((-1.5, 1.5, 1.5), arm.pose.quaternion)
     for _ in range(20):
         before = arm.tip.copy()
@@ -96,9 +96,29 @@ def test_a_far_reference_pulls_no_harder_than_the_leash_allows(arm):
         arm.run(TICK)
 
 
-def test_a_leash_shortens_along_the_line_and_leaves_near_references_alone():
-    assert on_leash((1.0, 2.0, 3.0), [1.0, 2.0, 2.8]) == (1.0, 2.0, 3.0)
-    assert on_leash((1.0, 0.6, 0.8), [1.0, 0.0, 0.0]) == pytest.approx((1.0, 0.15, 0.2))
+def test_a_far_reference_is_pulled_in_along_the_line_and_a_near_one_left_alone():
+    stiffness = (400.0, 400.0, 400.0)
+    assert within_reach((1.0, 2.0, 3.0), [1.0, 2.0, 2.8], stiffness) == (1.0, 2.0, 3.0)
+    assert within_reach((1.0, 0.6, 0.8), [1.0, 0.0, 0.0], stiffness) == pytest.approx((1.0, 0.15, 0.2))
+
+
+def test_an_axis_without_stiffness_does_not_count_for_the_reach():
+    assert within_reach((1.0, 0.1, 0.8), [1.0, 0.0, 0.0], (500.0, 500.0, 0.0)) == (1.0, 0.1, 0.8)
+
+
+def test_an_axis_without_stiffness_is_still_damped(arm):
+    arm.controller.aim_stiffness((400.0, 400.0, 0.0, 50.0))
+    arm.run(1.0)
+    arm.controller.aim_force((0.0, 0.0, -2.0))
+    before = arm.tip[2]
+    arm.run(2.0)
+    assert 0.0 < before - arm.tip[2] < 2.0 * 2.0 / 20.0  # slower than force / damping
+
+
+def test_asking_again_for_the_same_changes_nothing(arm):
+    arm.controller.aim_stiffness((400.0, 400.0, 400.0, 50.0))
+    arm.controller.aim_force((0.0, 0.0, 0.0))
+    assert arm.controller.is_settled
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -107,7 +127,9 @@ def test_self_motion_leaves_the_tip_at_rest(simulation, seed):
     joints = np.random.default_rng(seed).uniform(-1.9, 1.9, 7)
     simulation.place_arm(joints)
     jacobian = np.zeros((6, 7))
-    mujoco.mj_jacSite(simulation.model, simulation.data, jacobian[:3], jacobian[3:], simulation.id_of("site", "tip"))
+    mujoco.mj_jacSite(
+        simulation.model, simulation.data, jacobian[:3], jacobian[3:], simulation.id_of("site", "tool_tip")
+    )
     motion = np.array(self_motion(joints))
     assert np.linalg.norm(motion) > 1e-3
     assert jacobian @ (motion / np.linalg.norm(motion)) == pytest.approx(np.zeros(6), abs=1e-9)

@@ -6,8 +6,16 @@ from robot_tasks.skills import Behaviour, SkillContext, Status
 SUCCESS, FAILURE, RUNNING, IDLE = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.IDLE
 
 
-def context(tip=(0.0, 0.0, 0.0)) -> SkillContext:
-    return SkillContext(tip=tip, goal=Pose((0.0, 0.0, 0.0), TOOL_DOWN))
+class Scene(dict[str, Pose]):
+    """A world without physics: poses by name."""
+
+    def pose_of(self, name: str) -> Pose:
+        return self[name]
+
+
+def context(tip=(0.0, 0.0, 0.0), **poses: Pose) -> SkillContext:
+    world = Scene(tool_tip=Pose(tip, TOOL_DOWN)) | poses
+    return SkillContext(tip=tip, world=Scene(world), goal=Pose((0.0, 0.0, 0.0), TOOL_DOWN))
 
 
 class Scripted(Behaviour):

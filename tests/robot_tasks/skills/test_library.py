@@ -33,14 +33,21 @@ def test_the_position_of_the_tip_chooses_the_goal(tree, tip, goal):
 
 
 def test_the_choice_follows_the_tip_back_and_forth(tree):
-    here = context()
+    here = context((-0.5, 0.6, 0.9))
     goals = []
     for z in (0.9, 1.0, 0.9):
         here.tip = (-0.5, 0.6, z)
+        here.world["tool_tip"] = Pose(here.tip, TOOL_DOWN)
         tree.tick(here)
         goals.append(here.goal)
     assert goals == [FIRST, SECOND, FIRST]
 
 
 def test_the_skill_succeeds_near_the_goal(tree):
+    assert tree.tick(context((-0.5, 0.6, 0.75))) is Status.RUNNING
     assert tree.tick(context((-0.6, 0.0, 0.749))) is Status.SUCCESS
+
+
+def test_the_skill_refuses_to_start_at_its_goal(tree):
+    assert tree.tick(context((-0.6, 0.0, 0.749))) is Status.FAILURE
+    assert str(tree.violated) == "not at(tool_tip, goal) within 0.05 m"

@@ -3,7 +3,16 @@
 import pytest
 
 from robot_tasks.geometry import TOOL_DOWN, Pose
-from robot_tasks.skills import CoordinateAtLeast, CoordinateBelow, PositionDistance, SetGoalPose, Status
+from robot_tasks.skills import (
+    ApplyForce,
+    ChangeStiffness,
+    CoordinateAtLeast,
+    CoordinateBelow,
+    OverlayMotion,
+    PositionDistance,
+    SetGoalPose,
+    Status,
+)
 from tests.robot_tasks.skills.scripted import context
 
 
@@ -28,3 +37,31 @@ def test_coordinate_conditions_are_opposites_and_the_limit_is_not_below_itself(y
 def test_coordinate_conditions_look_at_their_own_axis():
     tip = context((1.0, 2.0, 3.0))
     assert [CoordinateBelow(axis, 2.5).tick(tip).name for axis in "xyz"] == ["SUCCESS", "SUCCESS", "FAILURE"]
+
+
+def test_demands_are_made_at_every_tick_and_forgotten_between():
+    here, overlay = context(), object()
+    demands = ChangeStiffness((500.0, 500.0, 0.0, 50.0)), ApplyForce((0.0, 0.0, -3.0)), OverlayMotion(overlay)
+    for _ in range(2):
+        assert [demand.tick(here) for demand in demands] == [Status.RUNNING] * 3
+        assert (here.stiffness, here.force) == ((500.0, 500.0, 0.0, 50.0), (0.0, 0.0, -3.0))
+        assert here.overlay is overlay
+        here.forget_demands()
+        assert (here.stiffness, here.force, here.overlay) == ((400.0, 400.0, 400.0, 50.0), (0.0, 0.0, 0.0), None)
+
+
+@pytest.mark.parametrize(
+    ("leaf", "label"),
+    [
+        (SetGoalPose(Pose((1.0, 2.0, 0.5), TOOL_DOWN)), "SetGoalPose (1, 2, 0.5)"),
+        (ChangeStiffness((500.0, 500.0, 0.0, 50.0)), "ChangeStiffness (500, 500, 0) N/m, 50 Nm/rad"),
+        (ApplyForce((0.0, 0.0, -7.0)), "ApplyForce (0, 0, -7) N"),
+        (OverlayMotion("spiral"), "OverlayMotion spiral"),
+        (PositionDistance((0.0, 0.0, 1.0), threshold=0.05), "PositionDistance to (0, 0, 1) < 0.05 m"),
+        (CoordinateBelow("y", 0.05), "CoordinateBelow y, 0.05 m"),
+        (CoordinateAtLeast("z", 0.95), "CoordinateAtLeast z, 0.95 m"),
+    ],
+)
+def test_labels_tell_what_a_leaf_does(leaf, label):
+    assert leaf.label == label
+    assert leaf.children == ()
