@@ -9,9 +9,11 @@ from typing import Final
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
-from robot_tasks.episode import ContactRecord, ForceRecord
+from robot_tasks.episode import ContactRecord, FloatArray, ForceRecord
 from robot_tasks.errors import SimulationError
+from robot_tasks.names import TOOL
 from robot_tasks.simulation import Simulation
 
 HIDDEN_GROUP: Final = 3
@@ -30,6 +32,8 @@ The hardest blows of these arms overlap by 1 to 3 mm.
 class ContactMonitor:
     """Collect what the contact sensors of a scene report over an episode.
 
+    At each tick the sensors' buffers are put aside whole; what they mean is worked out when it is asked for.
+
     Parameters
     ----------
     simulation
@@ -39,86 +43,84 @@ class ContactMonitor:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._deepest = simulation.sensor_history("deepest")
+        self._history = simulation.data.history
         self._tool_force = simulation.sensor_history("tool_force")
-        self._touch_sensors = [
-            simulation.sensor_history(name) for name in simulation.names("sensor") if name.startswith(TOUCH)
-        ]
+        self._deepest = simulation.sensor_history("deepest")
+        touch_names = [name for name in simulation.names("sensor") if name.startswith(TOUCH)]
+        self._touches = [simulation.sensor_history(name) for name in touch_names]
         self._seconds_per_step = float(simulation.model.opt.timestep)
-        self._last_touch = -np.inf
-        self._touches = self._touch_steps = self._force_steps = 0
-        self._is_touching = False
-        self._peak_touch = self._penetration = 0.0
-        self._tool_peak = self._tool_sum = self._tool_last = 0.0
-
-    @property
-    def tool_peak(self) -> float:
-        """Largest net contact force on the tool so far in [N]."""
-        return self._tool_peak
-
-    def touch_record(self, *, held: float = 0.0) -> ContactRecord:
-        """Return the unwanted contacts so far, a present one prolonged by a time in [s]."""
-        return ContactRecord(
-            touches=self._touches,
-            seconds=self._touch_steps * self._seconds_per_step + (held if self._is_touching else 0.0),
-            peak_force=self._peak_touch,
-            deepest_penetration=self._penetration,
-        )
-
-    def tool_record(self, *, held: float = 0.0) -> ForceRecord:
-        """Return the forces on the tool so far, the present one prolonged by a time in [s]."""
-        return ForceRecord(
-            peak=self._tool_peak,
-            impulse=self._tool_sum * self._seconds_per_step + held * self._tool_last,
-            seconds=self._force_steps * self._seconds_per_step + (held if self._tool_last else 0.0),
-        )
+        self._ticks: list[FloatArray] = []
+        self._times: list[float] = []
 
     def observe(self) -> None:
-        """Take in the physics steps of one tick, at its end.
+        """Take in the physics steps of one tick, at its end."""
+        self._ticks.append(self._history.copy())
+        self._times.append(self._simulation.data.time)
+
+    @property
+    def load(self) -> float:
+        """Force in [N] on tool or arm, averaged over the last tick: impacts as one feels them who stands by."""
+        tool = np.linalg.norm(self._tool_force, axis=1).mean()
+        touches = [(sensor[:, 0] * (sensor[:, 3] < 0.0)).mean() for sensor in self._touches]
+        return float(max(tool, *touches)) if touches else float(tool)
+
+    def check(self) -> None:
+        """Look through all steps so far.
 
         Raises
         ------
         SimulationError
-            If two bodies overlap by more than `DEEPEST_OVERLAP`.
+            If two bodies overlapped by more than `DEEPEST_OVERLAP`.
         """
-        self._is_touching, self._tool_last = False, 0.0
-        deepest = self._deepest.min()
-        if deepest >= 0.0:  # nothing touched anything
+        if not self._ticks:
             return
-        if deepest < -DEEPEST_OVERLAP:
-            problem = f"two bodies overlap by {-1e3 * deepest:.1f} mm, {1e3 * DEEPEST_OVERLAP:g} at most mean anything"
-            raise SimulationError(self._simulation.time, problem)
-        self._observe_tool()
-        for readings in self._touch_sensors:
-            if readings[:, 3].min() < 0.0:
-                self._observe_touch()
-                return
+        depths = self._readings(self._deepest)[:, 0]
+        deepest = int(depths.argmin())
+        if depths[deepest] < -DEEPEST_OVERLAP:
+            problem = f"two bodies overlap by {-1e3 * depths[deepest]:.1f} mm, {1e3 * DEEPEST_OVERLAP:g} at most mean"
+            raise SimulationError(float(self._step_times()[deepest]), f"{problem} anything")
 
-    def _observe_tool(self) -> None:
-        force = self._tool_force
-        if not force.any():
-            return
-        magnitude = np.sqrt(np.einsum("ij,ij->i", force, force))  # (n_steps,)
-        self._tool_peak = max(self._tool_peak, float(magnitude.max()))
-        self._tool_sum += float(magnitude.sum())
-        self._tool_last = float(magnitude[-1])
-        self._force_steps += int(np.count_nonzero(magnitude))
+    def touch_record(self, *, held: float = 0.0) -> ContactRecord:
+        """Return the unwanted contacts so far, a present one prolonged by a time in [s]."""
+        if not (self._touches and self._ticks):
+            return ContactRecord()
+        readings = np.stack([self._readings(sensor) for sensor in self._touches])  # (n_sensors, n_steps, 4)
+        forces, distances = readings[:, :, 0], readings[:, :, 3]
+        is_touching: NDArray[np.bool_] = np.any(distances < 0.0, axis=0)
+        if not is_touching.any():
+            return ContactRecord()
+        times = self._step_times()[is_touching]
+        seconds = len(times) * self._seconds_per_step + (held if is_touching[-1] else 0.0)
+        return ContactRecord(
+            touches=1 + int(np.count_nonzero(np.diff(times) > RELEASE)),
+            seconds=seconds,
+            peak_force=float(forces[distances < 0.0].max()),
+            deepest_penetration=-float(distances.min()),
+        )
 
-    def _observe_touch(self) -> None:
-        """Go through the steps of a tick in which something untouchable was touched."""
-        readings = np.stack(self._touch_sensors)  # (n_sensors, n_steps, 4): force in the contact's frame, distance
-        touched = readings[:, :, 3] < 0.0
-        self._peak_touch = max(self._peak_touch, float(readings[:, :, 0][touched].max()))
-        self._penetration = max(self._penetration, -float(readings[:, :, 3].min()))
-        is_touching = [bool(step.any()) for step in touched.T]
-        start = self._simulation.time - len(is_touching) * self._seconds_per_step
-        for step, touches in enumerate(is_touching):
-            if touches:
-                time = start + step * self._seconds_per_step
-                self._touches += time - self._last_touch > RELEASE
-                self._last_touch = time
-        self._touch_steps += sum(is_touching)
-        self._is_touching = is_touching[-1]
+    def tool_record(self, *, held: float = 0.0) -> ForceRecord:
+        """Return the forces on the tool so far, the present one prolonged by a time in [s]."""
+        if not self._ticks:
+            return ForceRecord()
+        magnitudes = np.linalg.norm(self._readings(self._tool_force), axis=1)  # (n_steps,)
+        last = float(magnitudes[-1])
+        return ForceRecord(
+            peak=float(magnitudes.max()),
+            impulse=float(magnitudes.sum()) * self._seconds_per_step + held * last,
+            seconds=int(np.count_nonzero(magnitudes)) * self._seconds_per_step + (held if last else 0.0),
+        )
+
+    def _readings(self, sensor: FloatArray) -> FloatArray:
+        """Return the readings of a sensor at all steps so far, shape (n_steps, size)."""
+        start = (sensor.ctypes.data - self._history.ctypes.data) // self._history.itemsize
+        readings: FloatArray = np.concatenate([tick[start : start + sensor.size] for tick in self._ticks])
+        return readings.reshape(-1, sensor.shape[1])
+
+    def _step_times(self) -> FloatArray:
+        """Return the time of every step in [s], shape (n_steps,)."""
+        n_steps = len(self._deepest)
+        before_end = np.arange(n_steps)[::-1] * self._seconds_per_step
+        return (np.array(self._times)[:, None] - before_end).ravel()
 
 
 class Clearance:
@@ -139,7 +141,7 @@ class Clearance:
         self._data = simulation.data
         self._obstacle = simulation.id_of("geom", obstacle)
         model = simulation.model
-        is_robot = model.body_rootid == model.body_rootid[simulation.id_of("body", "tool_body")]
+        is_robot = model.body_rootid == model.body_rootid[simulation.id_of("body", TOOL)]
         is_moving = model.body_weldid > 0
         is_visible = model.geom_group < HIDDEN_GROUP
         self._geoms = np.flatnonzero((is_robot & is_moving)[model.geom_bodyid] & is_visible).tolist()

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from robot_tasks.geometry import Vector
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
@@ -17,6 +20,9 @@ _WIDTHS: Final = {
     "commanded_forces": 3,
     "object_poses": 7,
 }
+
+
+_IN_PLACE: Final[Vector] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,6 +76,8 @@ class Episode:
     """Feed-forward force that was commanded on top of the spring, in world axes in [N], shape (n, 3)."""
     object_poses: FloatArray | None = None
     """Pose x y z in [m] and quaternion w x y z of the task's object, shape (n, 7); None if it has none."""
+    shifts: Mapping[str, Vector] = field(default_factory=dict)
+    """How far the circumstances of the rollout moved bodies from their nominal places, in [m]."""
     success_time: float | None = None
     """When the task was achieved in [s]; None if it never was."""
     simulated_seconds: float
@@ -90,6 +98,20 @@ class Episode:
             shape = (n, width) if array is None else array.shape
             if shape != (n, width):
                 raise ValueError(f"Episode.{name}: expected shape {(n, width)} for {n} times, got {shape}")
+
+    def shift_of(self, body: str | None) -> Vector:
+        """Return how far a body stood from its nominal place in [m]; zero for None and for bodies in their places."""
+        return self.shifts.get(body, _IN_PLACE) if body else _IN_PLACE
+
+    def tips_seen_from(self, body: str | None) -> FloatArray:
+        """Return where the tip would be at the end of each step if the body stood in its place, shape (n_steps, 3)."""
+        return self.tip_positions[1:] - np.asarray(self.shift_of(body))
+
+    @property
+    def object_track(self) -> FloatArray:
+        """Pose of the task's object at each sample, shape (n, 7); a task without an object has none to ask for."""
+        assert self.object_poses is not None, "the task has no object"
+        return self.object_poses
 
     @property
     def is_success(self) -> bool:

@@ -12,39 +12,51 @@ from robot_tasks.episode import Episode
 from robot_tasks.errors import UnknownNameError
 from robot_tasks.rollout import rollout
 from robot_tasks.simulation import Simulation
-from robot_tasks.tasks import PUBLISHED, TASKS, Task
+from robot_tasks.tasks import PUBLISHED, STAND_INS, TASKS, Task
+
+PAPER: Final = "paper"
+VARIANTS: Final[Mapping[str, Mapping[str, Task]]] = {PAPER: TASKS, "published_code": PUBLISHED, "real": STAND_INS}
+"""Tasks as the paper means them; as its published code computes them; on a stand-in for the real robot."""
 
 
 class _WarmSimulations(threading.local):
-    """One simulation per task, thread and process: loading costs as much as half a second of simulated time."""
+    """One simulation per physics, thread and process: loading costs as much as half a second of simulated time."""
 
     def __init__(self) -> None:
-        self._by_scene: dict[str, Simulation] = {}
+        self._simulations: dict[tuple[str, str], Simulation] = {}
 
-    def get(self, scene: str) -> Simulation:
-        if scene not in self._by_scene:
-            self._by_scene[scene] = Simulation.from_scene(scene)
-        return self._by_scene[scene]
+    def get(self, task: Task) -> Simulation:
+        key = task.scene, repr(task.gap)
+        if key not in self._simulations:
+            self._simulations[key] = load(task)
+        return self._simulations[key]
 
 
 _SIMULATIONS: Final = _WarmSimulations()
 
 
-def find_task(name: str, *, as_published_code: bool = False) -> Task:
-    """Look up a task by name: as the paper means it, or as its published code computes it.
+def find_task(name: str, variant: str = PAPER) -> Task:
+    """Look up a task by name, in one of its `VARIANTS`.
 
     Raises
     ------
     UnknownNameError
-        If there is no such task.
+        If there is no such task or variant.
     """
-    if name not in TASKS:
-        raise UnknownNameError("task", name, TASKS)
-    return (PUBLISHED if as_published_code else TASKS)[name]
+    if variant not in VARIANTS:
+        raise UnknownNameError("variant", variant, VARIANTS)
+    if name not in VARIANTS[variant]:
+        raise UnknownNameError("task", name, VARIANTS[variant])
+    return VARIANTS[variant][name]
+
+
+def load(task: Task, *, timestep: float | None = None) -> Simulation:
+    """Load the physics of a task, its reality gap included, with its own or another step in [s]."""
+    return Simulation.from_scene(task.scene, timestep=timestep, modify=task.gap.apply)
 
 
 def evaluate(
-    task_name: str, configuration: Mapping[str, float], seed: int = 0, *, as_published_code: bool = False
+    task_name: str, configuration: Mapping[str, float], seed: int = 0, *, variant: str = PAPER
 ) -> dict[str, float]:
     """Run one rollout and measure it.
 
@@ -58,9 +70,8 @@ def evaluate(
         Value of every parameter of the task.
     seed
         Chooses start state and offsets of bodies. The same seed means the same circumstances for every configuration.
-    as_published_code
-        Whether to take the choices of the published code where they differ from the paper's text; see
-        `docs/robot_tasks.md`.
+    variant
+        One of `VARIANTS`.
 
     Returns
     -------
@@ -70,16 +81,16 @@ def evaluate(
     Raises
     ------
     UnknownNameError
-        If there is no such task.
+        If there is no such task or variant.
     ParameterError
         If the configuration does not fit the task.
     SimulationError
         If the physics diverged or bodies got into each other: the rollout means nothing and has no score.
     """
-    task = find_task(task_name, as_published_code=as_published_code)
+    task = find_task(task_name, variant)
     parameters = task.check(configuration)
     variation = task.randomization.sample(np.random.default_rng(seed))
-    return measure(task, rollout(task, parameters, variation, _SIMULATIONS.get(task.scene)))
+    return measure(task, rollout(task, parameters, variation, _SIMULATIONS.get(task)))
 
 
 def measure(task: Task, episode: Episode) -> dict[str, float]:
@@ -102,6 +113,7 @@ def summarize(episode: Episode) -> dict[str, float]:
         obstacle, if there is one, in [m], at most 0.5, sampled every 0.1 s. ``tool_peak_force``, ``tool_mean_force``
         in [N] and ``tool_impulse`` in [Ns]: magnitude of the net contact force on the tool, wanted or not; the mean
         over the time in contact. ``commanded_impulse``: integral of the commanded force's magnitude in [Ns].
+        ``interventions``: 1 if the operator stopped the robot, which happens on stand-ins only.
         ``simulated_seconds``: time after which nothing moved in [s].
     """
     contact, tool = episode.contact, episode.tool_contact
@@ -120,5 +132,6 @@ def summarize(episode: Episode) -> dict[str, float]:
         "tool_mean_force": tool.mean,
         "tool_impulse": tool.impulse,
         "commanded_impulse": float(commanded.sum()) * duration / episode.n_steps,
+        "interventions": float(episode.interventions),
         "simulated_seconds": episode.simulated_seconds,
     }

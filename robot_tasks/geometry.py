@@ -5,7 +5,7 @@ A tick handles a few dozen numbers; at that size tuples are several times faster
 
 from __future__ import annotations
 
-from math import acos, sin, sqrt
+from math import acos, cos, sin, sqrt
 from typing import NamedTuple, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
@@ -33,6 +33,19 @@ def distance(a: Vector, b: Vector) -> float:
     """Measure the straight distance between two points in [m]."""
     dx, dy, dz = a[0] - b[0], a[1] - b[1], a[2] - b[2]
     return sqrt(dx * dx + dy * dy + dz * dz)
+
+
+def turned(pose: Pose, angle: float) -> Pose:
+    """Turn a pose in place about the vertical by an angle in [rad]."""
+    c, s = cos(0.5 * angle), sin(0.5 * angle)
+    w, x, y, z = pose.quaternion
+    return Pose(pose.position, (c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w))
+
+
+def moved(pose: Pose, offset: Vector) -> Pose:
+    """Move a pose by an offset in world axes in [m]."""
+    (x, y, z), (dx, dy, dz) = pose.position, offset
+    return Pose((x + dx, y + dy, z + dz), pose.quaternion)
 
 
 def rotation_angle(a: Quaternion, b: Quaternion) -> float:

@@ -7,25 +7,25 @@ where everything is, ends one tick, and its second half, which computes and appl
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping
+from math import isfinite
 from typing import Final
 
 import mujoco
 import numpy as np
 
-from robot_tasks.contacts import Clearance, ContactMonitor
 from robot_tasks.control import ImpedanceController
-from robot_tasks.control.impedance import TIP
 from robot_tasks.episode import Episode
 from robot_tasks.geometry import Pose
 from robot_tasks.motion import MotionGenerator
+from robot_tasks.names import TIP
 from robot_tasks.randomization import Variation
-from robot_tasks.simulation import N_JOINTS, TICK, Simulation
+from robot_tasks.recorder import SAMPLE_SECONDS, TICKS_PER_SAMPLE, Recorder
+from robot_tasks.simulation import TICK, Simulation
 from robot_tasks.skills import SkillContext, Status
 from robot_tasks.tasks import Task
 
-TICKS_PER_SAMPLE: Final = 5
-"""Ticks between samples of the episode: rewards are summed over a 10 Hz grid."""
 STILL_SPEED: Final = 1e-4
 """Joint speed in [rad/s] below which the arm counts as standing still."""
 
@@ -64,53 +64,55 @@ def rollout(
         If the physics diverged or bodies got into each other.
     """
     variation.apply(simulation)
-    run = _Run(task, parameters, simulation)
+    run = _Run(task, parameters, variation, simulation)
     show = on_tick or _ignore
-    n_samples = round(task.duration / (TICK * TICKS_PER_SAMPLE))
-    for sample in range(n_samples):
-        run.record()
-        if stop_when_still and run.is_over():
+    for sample in range(round(task.duration / SAMPLE_SECONDS)):
+        run.sample()
+        if run.is_stopped or (stop_when_still and run.is_still()):
             break
         for tick in range(sample * TICKS_PER_SAMPLE, (sample + 1) * TICKS_PER_SAMPLE):
             show(tick * TICK)
             run.tick(tick * TICK)
+            if run.is_stopped:
+                break
     else:
-        run.record()
+        run.sample()
     show(simulation.time)
-    simulation.raise_if_diverged()
-    return run.episode(n_samples + 1)
+    return run.episode()
 
 
 class _Run:
-    """The moving parts of one rollout."""
+    """Skill, motion generator and controller of one rollout, and the simulation they move."""
 
-    def __init__(self, task: Task, parameters: Mapping[str, float], simulation: Simulation) -> None:
+    def __init__(
+        self, task: Task, parameters: Mapping[str, float], variation: Variation, simulation: Simulation
+    ) -> None:
+        pose = simulation.pose_of(TIP)
+        self.is_stopped = False
         self._simulation = simulation
-        self._model, self._data = simulation.model, simulation.data
         self._tip = simulation.site_position(TIP)
-        pose = self._measured_pose()
         self._tree = task.build_tree(parameters)
         self._context = SkillContext(tip=pose.position, world=simulation, goal=pose)
         self._generator = MotionGenerator(pose)
-        self._controller = ImpedanceController(simulation)
-        self._contacts = ContactMonitor(simulation)
-        self._clearance = Clearance(simulation, task.obstacle) if task.obstacle else None
-        self._object = task.object_body
-        self._final_condition = task.final_condition
+        self._controller = ImpedanceController(simulation, force_compensation=task.gap.force_compensation)
+        self._recorder = Recorder(task, simulation, variation.shifts)
+        self._skill_decides = task.final_condition is None
+        self._force_limit = task.gap.force_limit
+        self._has_operator = isfinite(task.gap.force_limit)
+        self._sensed_tips = deque([pose.position], maxlen=1 + task.gap.ticks_of_sensing_delay)
         self._reference = pose
         self._is_tree_done = False
-        self._success_time: float | None = None
         self._time = 0.0
         self._n_still = 0
-        self._samples: list[tuple[float, ...]] = []
-        self._steps_per_tick = round(TICK / self._model.opt.timestep)
+        self._steps_per_tick = round(TICK / simulation.model.opt.timestep)
 
     def tick(self, time: float) -> None:
         """Decide, command, and run physics for one tick that starts at a time in [s]."""
         self._time = time
         x, y, z = self._tip.tolist()
         context, controller = self._context, self._controller
-        context.tip = (x, y, z)
+        self._sensed_tips.append((x, y, z))
+        context.tip = self._sensed_tips[0]
         if not self._is_tree_done:
             self._decide(time)
         controller.aim_stiffness(context.stiffness)
@@ -119,61 +121,31 @@ class _Run:
         self._reference = self._generator.reference(time)
         controller.update(self._reference, TICK)
         self._advance()
-        self._contacts.observe()
+        contacts = self._recorder.contacts
+        contacts.observe()
+        if self._has_operator:
+            self.is_stopped = contacts.load > self._force_limit
 
-    def record(self) -> None:
-        """Take a sample of the present state."""
-        data = self._data
-        joints = data.qpos[:N_JOINTS].tolist()
-        pose = self._simulation.pose_of(self._object) if self._object else None
-        self._samples.append(
-            (
-                *self._tip.tolist(),
-                *self._reference.position,
-                *joints,
-                *self._controller.force,
-                *(() if pose is None else (*pose.position, *pose.quaternion)),
-            )
+    def sample(self) -> None:
+        """Take a sample, and note whether anything moves."""
+        self._recorder.sample(self._reference.position, self._controller.force)
+        is_still = (
+            self._controller.is_settled
+            and self._generator.is_finished(self._time)
+            and float(np.abs(self._simulation.data.qvel).max()) < STILL_SPEED
         )
-        if self._clearance:
-            self._clearance.observe()
-        if self._final_condition:
-            is_achieved = self._final_condition.holds(self._simulation)
-            if not is_achieved:
-                self._success_time = None
-            elif self._success_time is None:
-                self._success_time = self._simulation.time
-        is_still = float(np.abs(data.qvel).max()) < STILL_SPEED and self._controller.is_settled
-        self._n_still = self._n_still + 1 if is_still and self._generator.is_finished(self._time) else 0
+        self._n_still = self._n_still + 1 if is_still else 0
 
-    def is_over(self) -> bool:
+    def is_still(self) -> bool:
         """Tell whether nothing can change any more.
 
         Twice in a row: an oscillating arm stands still for an instant, but not again a tenth of a second later.
         """
         return self._n_still >= 2 and self._time > 0.0
 
-    def episode(self, n_samples: int) -> Episode:
-        """Return the samples, the last one repeated up to the full length."""
-        table = np.array(self._samples + self._samples[-1:] * (n_samples - len(self._samples)))
-        simulated_seconds = (len(self._samples) - 1) * TICK * TICKS_PER_SAMPLE
-        held = (n_samples - len(self._samples)) * TICK * TICKS_PER_SAMPLE
-        contact = self._contacts.touch_record(held=held)
-        return Episode(
-            times=np.linspace(0.0, (n_samples - 1) * TICK * TICKS_PER_SAMPLE, n_samples),
-            tip_positions=table[:, 0:3],
-            reference_positions=table[:, 3:6],
-            joint_positions=table[:, 6:13],
-            commanded_forces=table[:, 13:16],
-            object_poses=table[:, 16:] if self._object else None,
-            success_time=self._success_time,
-            simulated_seconds=simulated_seconds,
-            clearance=min(self._clearance.smallest, -contact.deepest_penetration or np.inf)
-            if self._clearance
-            else np.inf,
-            contact=contact,
-            tool_contact=self._contacts.tool_record(held=held),
-        )
+    def episode(self) -> Episode:
+        """Return what happened."""
+        return self._recorder.episode(is_stopped=self.is_stopped)
 
     def _decide(self, time: float) -> None:
         """Tick the tree and start a trajectory if it changed its goal."""
@@ -183,21 +155,18 @@ class _Run:
         if status is not Status.RUNNING:
             self._is_tree_done = True
             context.forget_demands()
-            if status is Status.SUCCESS and self._final_condition is None:
-                self._success_time = time
+            if status is Status.SUCCESS and self._skill_decides:
+                self._recorder.success_time = time
         if context.goal is not generator.goal and context.goal != generator.goal:
-            generator.move_to(context.goal, measured=self._measured_pose(), time=time)
+            measured = Pose(context.tip, self._simulation.pose_of(TIP).quaternion)
+            generator.move_to(context.goal, measured=measured, time=time)
 
     def _advance(self) -> None:
         """Run physics for one tick."""
-        model, data = self._model, self._data
+        model, data = self._simulation.model, self._simulation.data
         mujoco.mj_step2(model, data)
         mujoco.mj_step(model, data, self._steps_per_tick - 1)
         mujoco.mj_step1(model, data)
-
-    def _measured_pose(self) -> Pose:
-        x, y, z = self._tip.tolist()
-        return Pose((x, y, z), self._simulation.site_quaternion(TIP))
 
 
 def _ignore(time: float) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 from typing import Any, Final, Literal, Self, TypeAlias
 
@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 
 from robot_tasks.errors import SimulationError, UnknownNameError
 from robot_tasks.geometry import Pose
+from robot_tasks.names import N_JOINTS
 
 FloatArray: TypeAlias = NDArray[np.float64]
 Kind: TypeAlias = Literal["body", "joint", "geom", "site", "actuator", "camera", "sensor"]
 
 TICK: Final = 0.02
 """Seconds between decisions and between updates of the reference; the sensors' buffers hold one tick."""
-N_JOINTS: Final = 7
-"""Joints of the arm; they come first in every scene."""
 
 _OBJECT_TYPES: Final = {
     "body": mujoco.mjtObj.mjOBJ_BODY,
@@ -72,7 +71,9 @@ class Simulation:
         self._places: dict[str, tuple[FloatArray, FloatArray | None, FloatArray | None]] = {}
 
     @classmethod
-    def from_scene(cls, file_name: str, *, timestep: float | None = None) -> Self:
+    def from_scene(
+        cls, file_name: str, *, timestep: float | None = None, modify: Callable[[Any], None] | None = None
+    ) -> Self:
         """Load a scene from the package's `models` folder, such as ``"obstacle_avoidance.xml"``.
 
         Parameters
@@ -81,6 +82,8 @@ class Simulation:
             Name of the scene's file.
         timestep
             Physics step in [s] instead of the scene's own.
+        modify
+            Changes the scene, a `mujoco.MjSpec`, before it is compiled.
 
         Raises
         ------
@@ -88,8 +91,9 @@ class Simulation:
             If there is no such scene.
         """
         specification = load_scene(file_name)
-        if timestep is not None:
-            set_timestep(specification, timestep)
+        set_timestep(specification, timestep or specification.option.timestep)
+        if modify is not None:
+            modify(specification)
         return cls(specification.compile())
 
     @property
@@ -163,13 +167,6 @@ class Simulation:
         position: FloatArray = self.data.site_xpos[self.id_of("site", name)]
         return position
 
-    def site_quaternion(self, name: str) -> tuple[float, float, float, float]:
-        """Compute the orientation of a site as a quaternion w, x, y, z."""
-        quaternion = np.empty(4)
-        mujoco.mju_mat2Quat(quaternion, self.data.site_xmat[self.id_of("site", name)])
-        w, x, y, z = quaternion.tolist()
-        return w, x, y, z
-
     def shift_body(self, name: str, offset: Sequence[float]) -> None:
         """Move a fixed body by an offset in [m] from its nominal place, until the next reset."""
         index = self.id_of("body", name)
@@ -193,6 +190,15 @@ class Simulation:
         """Put the arm at rest at joint angles in [rad] and compute all that follows from them."""
         self.data.qpos[:N_JOINTS] = joint_positions
         mujoco.mj_forward(self.model, self.data)
+
+    def hold_commands(self) -> None:
+        """Let actuators with a delay go on from the present commands, as if these had long been given."""
+        model, data = self.model, self.data
+        for actuator, (n_samples, *_) in enumerate(model.actuator_history.tolist()):
+            if n_samples:
+                start, size = model.actuator_ctrladr[actuator], model.actuator_ctrlnum[actuator]
+                values = np.tile(data.ctrl[start : start + size], (n_samples, 1))
+                mujoco.mj_initCtrlHistory(model, data, actuator, None, values)
 
     def raise_if_diverged(self) -> None:
         """Raise a `SimulationError` if MuJoCo met numbers that are not finite or too large."""

@@ -6,6 +6,7 @@ import csv
 import json
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from hypermap_lite.cli import main
@@ -68,3 +69,15 @@ def test_an_example_is_named_after_its_file_and_stands_in_the_table(file: Path) 
 def test_examples_have_names_of_their_own() -> None:
     names = [load_scenario(file).application_name for file in SCENARIOS]
     assert len(set(names)) == len(names)
+
+
+def test_a_robot_run_has_the_same_rows_with_any_number_of_workers(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    file = EXAMPLES / "robot" / "peg_insertion" / "operator_prior.json"
+    tables = []
+    for workers in (1, 2):
+        folder = tmp_path / str(workers)
+        assert run(file, folder, "evaluator.replicates=2", f"evaluator.workers={workers}") == 0
+        table = pd.read_csv(folder / "evaluations.csv")
+        tables.append(table.sort_values(["trial", "replicate"], ignore_index=True).drop(columns="seconds"))
+    pd.testing.assert_frame_equal(*tables, check_exact=True)

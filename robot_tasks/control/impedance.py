@@ -17,7 +17,8 @@ from typing import Final
 
 from robot_tasks.control.ramp import Ramp
 from robot_tasks.geometry import Pose, Quaternion, Stiffness, Vector
-from robot_tasks.simulation import N_JOINTS, Simulation
+from robot_tasks.names import N_JOINTS, TIP
+from robot_tasks.simulation import Simulation
 
 STIFFNESS: Final[Stiffness] = (400.0, 400.0, 400.0, 50.0)
 """Stiffness at the start of an episode."""
@@ -45,9 +46,6 @@ POSTURE_STIFFNESS: Final = 10.0
 POSTURE_DAMPING: Final = 4.0
 """Damping of the posture in [Nms/rad]."""
 
-TIP: Final = "tool_tip"
-"""Site whose pose is controlled."""
-
 _AXES: Final = ("impedance_x", "impedance_y", "impedance_z")
 _ROTATION: Final = "impedance_rotation"
 
@@ -60,10 +58,12 @@ class ImpedanceController:
     Parameters
     ----------
     simulation
-        Its scene must have the actuators of `models/robot.xml`.
+        Its scene must have the actuators of `models/robot.xml`, and its arm must stand where the episode starts.
+    force_compensation
+        Vertical force in [N] that is applied on top of every vertical feed-forward force but zero.
     """
 
-    def __init__(self, simulation: Simulation) -> None:
+    def __init__(self, simulation: Simulation, *, force_compensation: float = 0.0) -> None:
         self._model = simulation.model
         self._ctrl = simulation.data.ctrl
         self._qpos = simulation.data.qpos[:N_JOINTS]
@@ -76,7 +76,10 @@ class ImpedanceController:
         self._quaternion: Quaternion | None = None
         self._stiffness = Ramp(STIFFNESS, rate=STIFFNESS_RATE)
         self._force = Ramp((0.0, 0.0, 0.0), rate=FORCE_RATE)
+        self._force_compensation = force_compensation
         self._write_gains()
+        self._write_reference(simulation.pose_of(TIP))
+        simulation.hold_commands()
 
     @property
     def force(self) -> tuple[float, ...]:
@@ -103,19 +106,23 @@ class ImpedanceController:
 
     def update(self, reference: Pose, seconds: float) -> None:
         """Write the commands of one tick that lasts a time in [s]."""
+        self._write_reference(reference)
+        if not self._stiffness.is_settled:
+            self._stiffness.advance(seconds)
+            self._write_gains()
+        if not self._force.is_settled:
+            self._force.advance(seconds)
+            x, y, z = self._force.value
+            self._ctrl[1:6:2] = x, y, z + self._force_compensation if z else z
+        self._applied[:] = posture_torque(self._qpos.tolist(), self._qvel.tolist())
+
+    def _write_reference(self, reference: Pose) -> None:
         ctrl = self._ctrl
         position = within_reach(reference.position, self._tip.tolist(), self._stiffness.value)
         if position != self._position:
             self._position = ctrl[0], ctrl[2], ctrl[4] = position  # one by one: faster than a slice at this length
         if reference.quaternion is not self._quaternion:
             self._quaternion = ctrl[6], ctrl[7], ctrl[8], ctrl[9] = reference.quaternion
-        if not self._stiffness.is_settled:
-            self._stiffness.advance(seconds)
-            self._write_gains()
-        if not self._force.is_settled:
-            self._force.advance(seconds)
-            self._ctrl[1:6:2] = self._force.value
-        self._applied[:] = posture_torque(self._qpos.tolist(), self._qvel.tolist())
 
     def _write_gains(self) -> None:
         """Write stiffness and damping where MuJoCo's pid and orientation actuators keep them."""

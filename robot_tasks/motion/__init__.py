@@ -3,6 +3,15 @@
 from robot_tasks.motion.generator import MotionGenerator
 from robot_tasks.motion.overlay import Overlay
 from robot_tasks.motion.profile import MotionLimits, TrapezoidalProfile
+from robot_tasks.motion.spiral import ArchimedesSpiral, SteppedSpiral
 from robot_tasks.motion.trajectory import Trajectory
 
-__all__ = ["MotionGenerator", "MotionLimits", "Overlay", "Trajectory", "TrapezoidalProfile"]
+__all__ = [
+    "ArchimedesSpiral",
+    "MotionGenerator",
+    "MotionLimits",
+    "Overlay",
+    "SteppedSpiral",
+    "Trajectory",
+    "TrapezoidalProfile",
+]

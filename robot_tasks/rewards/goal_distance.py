@@ -23,9 +23,11 @@ class GoalDistance:
     """w in [m]."""
     offset: float = 0.0
     """m in [m^2]."""
+    follows: str | None = None
+    """Body that the goal moves with, where the circumstances of a rollout shift it; None: it stays."""
 
     def __call__(self, episode: Episode) -> FloatArray:
         """Return the reward of each step, in (0, 1], shape (n_steps,)."""
-        difference = episode.tip_positions[1:] - np.asarray(self.goal)  # (n_steps, 3)
+        difference = episode.tips_seen_from(self.follows) - np.asarray(self.goal)  # (n_steps, 3)
         squared_distance = np.square(difference).sum(axis=1)
         return np.exp(-(squared_distance + self.offset) / (2.0 * self.width**2))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import degrees
 from typing import Protocol
 
-from robot_tasks.geometry import Pose, Vector, distance, rotation_angle
+from robot_tasks.geometry import Pose, Quaternion, Vector, distance, rotation_angle
 from robot_tasks.skills.behaviour import World
 
 
@@ -25,8 +25,8 @@ class At:
 
     thing: str
     """Name of a body or site of the scene."""
-    place: Pose
-    """Where it is to be, in world axes."""
+    place: Pose | str
+    """Where it is to be: a pose in world axes, or the name of another body or site."""
     place_name: str
     """What the place is called, as in ``"hole"``."""
     distance: float
@@ -37,13 +37,33 @@ class At:
     def holds(self, world: World) -> bool:
         """Tell whether the thing is there."""
         pose = world.pose_of(self.thing)
-        if distance(pose.position, self.place.position) >= self.distance:
+        place = world.pose_of(self.place) if isinstance(self.place, str) else self.place
+        if distance(pose.position, place.position) >= self.distance:
             return False
-        return self.angle is None or rotation_angle(pose.quaternion, self.place.quaternion) < self.angle
+        return self.angle is None or rotation_angle(pose.quaternion, place.quaternion) < self.angle
 
     def __str__(self) -> str:
         angle = "" if self.angle is None else f" and {degrees(self.angle):g} deg"
         return f"at({self.thing}, {self.place_name}) within {self.distance:g} m{angle}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Upright:
+    """A thing keeps an orientation, but for an angle, wherever it is."""
+
+    thing: str
+    """Name of a body or site of the scene."""
+    orientation: Quaternion
+    """Quaternion w, x, y, z to keep."""
+    angle: float
+    """Largest rotation in [rad]."""
+
+    def holds(self, world: World) -> bool:
+        """Tell whether the thing has the orientation."""
+        return rotation_angle(world.pose_of(self.thing).quaternion, self.orientation) < self.angle
+
+    def __str__(self) -> str:
+        return f"upright({self.thing}) within {degrees(self.angle):g} deg"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,16 +2,38 @@
 
 from __future__ import annotations
 
+from math import radians
 from typing import Final
 
-from robot_tasks.geometry import Pose
-from robot_tasks.skills.composites import ParallelFs, Selector, Serial
-from robot_tasks.skills.conditions import At, Not
-from robot_tasks.skills.primitives import CoordinateAtLeast, CoordinateBelow, PositionDistance, SetGoalPose
+from robot_tasks.geometry import TOOL_DOWN, Pose, Stiffness
+from robot_tasks.motion.spiral import ArchimedesSpiral
+from robot_tasks.names import TIP
+from robot_tasks.skills.behaviour import Behaviour
+from robot_tasks.skills.composites import ParallelFs, Selector, Serial, SerialStar
+from robot_tasks.skills.conditions import At, Not, Upright
+from robot_tasks.skills.primitives import (
+    ApplyForce,
+    ChangeStiffness,
+    CoordinateAtLeast,
+    CoordinateBelow,
+    OverlayMotion,
+    PositionDistance,
+    SetGoalPose,
+)
 from robot_tasks.skills.skill import ParameterKind, Skill, SkillDescription, SkillParameter
 
-TIP: Final = "tool_tip"
-"""Site of the scenes that skills move."""
+SEARCH_STIFFNESS: Final[Stiffness] = (500.0, 500.0, 0.0, 50.0)
+"""Stiffness of a search over a surface: stiff along it, pressed onto it by force alone."""
+PUSH_STIFFNESS: Final[Stiffness] = (700.0, 700.0, 700.0, 50.0)
+"""Stiffness of a push."""
+PUSH_FORCE: Final = -7.0
+"""Vertical force in [N] that keeps a pushing tool down."""
+OBJECT_TOLERANCE: Final = 0.03
+"""Distance of an object to its goal in [m] that counts as arrived."""
+OBJECT_ANGLE_TOLERANCE: Final = radians(10.0)
+"""Angle of an object to its goal in [rad] that counts as arrived."""
+LARGEST_TILT: Final = radians(15.0)
+"""Tilt of a peg in [rad] beyond which it would jam or break something."""
 
 _LEARNED: Final = ParameterKind.LEARNED
 _REQUIRED: Final = ParameterKind.REQUIRED
@@ -67,3 +89,101 @@ def pass_over_obstacle(
         PositionDistance(goal.position, threshold=success_distance),
     )
     return Skill(description, body)
+
+
+def insert_peg(
+    goal: Pose, *, force: float, search: ArchimedesSpiral, success_distance: float, container: str = "block"
+) -> Skill:
+    """Press a peg onto a surface and search on a spiral until it drops into the hole.
+
+    Horizontally the tip follows the spiral around the goal; vertically only the force acts.
+
+    Parameters
+    ----------
+    goal
+        Pose of the inserted tip, in the middle of where the hole is believed to be.
+    force
+        Force along world z in [N]; negative presses down.
+    search
+        The spiral, which already runs during the descent.
+    success_distance
+        Distance of the tip to the goal's position in [m] that ends the skill.
+    container
+        What has the hole.
+
+    Returns
+    -------
+    Skill
+        Succeeds near the goal; fails if it starts there or if the peg tilts.
+    """
+    tip_in_hole = At(thing=TIP, place=goal, place_name=container, distance=success_distance)
+    description = SkillDescription(
+        name="insert_peg",
+        description="Press a peg onto a surface and search on a spiral until it drops into a hole.",
+        parameters=(
+            SkillParameter(name="force", kind=_LEARNED, value="N", description="Force along world z"),
+            SkillParameter(name="search", kind=_LEARNED, value="spiral", description="Pitch, path speed and radius"),
+            SkillParameter(name="goal", kind=_REQUIRED, value="pose", description="Where the inserted tip is"),
+            SkillParameter(name="success_distance", kind=_OPTIONAL, value="m", description="How near is near enough"),
+        ),
+        preconditions=(Not(tip_in_hole),),
+        holdconditions=(Upright(thing=TIP, orientation=TOOL_DOWN, angle=LARGEST_TILT),),
+        postconditions=(tip_in_hole,),
+    )
+    body = ParallelFs(
+        SetGoalPose(goal),
+        ChangeStiffness(SEARCH_STIFFNESS),
+        ApplyForce((0.0, 0.0, force)),
+        OverlayMotion(search),
+        PositionDistance(goal.position, threshold=success_distance),
+    )
+    return Skill(description, body)
+
+
+def push_object(start: Pose, goal: Pose, *, thing: str, goal_site: str, arrival_distance: float) -> Skill:
+    """Put the tool down beside an object and push it along a straight line.
+
+    Parameters
+    ----------
+    start
+        Where the push begins.
+    goal
+        Where the tool heads for with the object before it.
+    thing
+        Body that is pushed.
+    goal_site
+        Site of the scene that marks the object's goal.
+    arrival_distance
+        Distance of the tip in [m] to `start` that ends the approach, and to `goal` that ends the push.
+
+    Returns
+    -------
+    Skill
+        Ends near the goal: successfully if the object is at its own.
+    """
+    object_at_goal = At(
+        thing=thing, place=goal_site, place_name=goal_site, distance=OBJECT_TOLERANCE, angle=OBJECT_ANGLE_TOLERANCE
+    )
+    description = SkillDescription(
+        name="push_object",
+        description="Put the tool down beside an object and push it along a straight line.",
+        parameters=(
+            SkillParameter(name="start", kind=_LEARNED, value="pose", description="Where the push begins"),
+            SkillParameter(name="goal", kind=_LEARNED, value="pose", description="Where the tool heads for"),
+            SkillParameter(name="thing", kind=_REQUIRED, value="body", description="What is pushed"),
+            SkillParameter(name="goal_site", kind=_REQUIRED, value="site", description="Where it is to arrive"),
+            SkillParameter(name="arrival_distance", kind=_OPTIONAL, value="m", description="How near is near enough"),
+        ),
+        preconditions=(Not(object_at_goal),),
+        postconditions=(object_at_goal, At(thing=TIP, place=goal, place_name="goal", distance=arrival_distance)),
+    )
+    body = SerialStar(
+        ParallelFs(_go_to(start, arrival_distance), ChangeStiffness(PUSH_STIFFNESS)),
+        ParallelFs(_go_to(goal, arrival_distance), ChangeStiffness(PUSH_STIFFNESS), ApplyForce((0.0, 0.0, PUSH_FORCE))),
+    )
+    return Skill(description, body)
+
+
+def _go_to(pose: Pose, arrival_distance: float) -> Behaviour:
+    """Move straight to a pose until near it."""
+    return ParallelFs(SetGoalPose(pose), PositionDistance(pose.position, threshold=arrival_distance))

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import isfinite
+from typing import Final
 
 from robot_tasks.errors import ParameterError
 from robot_tasks.randomization import Randomization
+from robot_tasks.reality_gap import RealityGap
 from robot_tasks.rewards import RewardTerm
 from robot_tasks.skills import Behaviour
 from robot_tasks.skills.conditions import Relation
+
+NO_GAP: Final = RealityGap()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,6 +54,8 @@ class Task:
     """Free body whose pose is recorded, if any."""
     final_condition: Relation | None = None
     """What is to hold at the end: success is its holding from some time on. None: success is that of the skill."""
+    gap: RealityGap = NO_GAP
+    """What the stand-in for the real robot does differently; nothing in the task itself."""
 
     @property
     def terms(self) -> tuple[RewardTerm, ...]:

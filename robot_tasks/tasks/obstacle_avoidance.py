@@ -21,7 +21,7 @@ SUCCESS_DISTANCE: Final = 0.05
 
 TABLE: Final = Box(low=(-0.93, -0.7, 0.0), high=(-0.13, 0.5, 0.6))
 ENGINE: Final = Box(low=(-0.71, 0.15, 0.6), high=(-0.33, 0.45, 0.9))
-"""Boxes of the rewards, in [m]. They stay at the nominal place: a rollout's shift is unknown to whoever judges it."""
+"""Boxes of the rewards at their nominal places, in [m]."""
 
 STARTS: Final = {
     "s0": (0.47, 1.54, -0.30, -0.84, 1.48, 1.34, -1.28),
@@ -49,33 +49,44 @@ def _length(name: str, low: float, high: float, description: str) -> Parameter:
     return Parameter(name=name, low=low, high=high, unit="m", description=description)
 
 
-OBSTACLE_AVOIDANCE: Final = Task(
-    name="obstacle_avoidance",
-    description="Carry the tool over an engine to a block behind it.",
-    scene="obstacle_avoidance.xml",
-    duration=12.0,
-    parameters=(
-        _length("mp1_position_y", -0.5, 1.5, "World y of the first way-point"),
-        _length("mp1_position_z", 0.5, 1.5, "Height of the first way-point"),
-        _length("mp2_position_y", -0.5, 1.5, "World y of the second way-point"),
-        _length("mp2_position_z", 0.5, 1.5, "Height of the second way-point"),
-        _length("mp2_threshold", 0.5, 1.5, "Height of the tip from which it heads for the second way-point"),
-        _length("mp3_threshold", -0.5, 1.5, "World y of the tip below which it heads for the goal"),
-    ),
-    build_tree=build_tree,
-    objectives={
-        "performance": (
-            RewardTerm(name="success_bonus", reward=FixedSuccess(value=8.0)),
-            RewardTerm(name="goal_distance", reward=GoalDistance(goal=GOAL, width=0.4, offset=0.25), weight=50.0),
+def _task(*, follows: str | None) -> Task:
+    return Task(
+        name="obstacle_avoidance",
+        description="Carry the tool over an engine to a block behind it.",
+        scene="obstacle_avoidance.xml",
+        duration=12.0,
+        parameters=(
+            _length("mp1_position_y", -0.5, 1.5, "World y of the first way-point"),
+            _length("mp1_position_z", 0.5, 1.5, "Height of the first way-point"),
+            _length("mp2_position_y", -0.5, 1.5, "World y of the second way-point"),
+            _length("mp2_position_z", 0.5, 1.5, "Height of the second way-point"),
+            _length("mp2_threshold", 0.5, 1.5, "Height of the tip from which it heads for the second way-point"),
+            _length("mp3_threshold", -0.5, 1.5, "World y of the tip below which it heads for the goal"),
         ),
-        "safety": (
-            RewardTerm(name="table_avoidance", reward=BoxAvoidance(box=TABLE, width=7.0, margin=0.03), weight=0.15),
-            RewardTerm(name="engine_avoidance", reward=BoxAvoidance(box=ENGINE, width=7.0, margin=0.03), weight=1.5),
+        build_tree=build_tree,
+        objectives={
+            "performance": (
+                RewardTerm(name="success_bonus", reward=FixedSuccess(value=8.0)),
+                RewardTerm(name="goal_distance", reward=GoalDistance(goal=GOAL, width=0.4, offset=0.25), weight=50.0),
+            ),
+            "safety": (
+                RewardTerm(name="table_avoidance", reward=BoxAvoidance(box=TABLE, width=7.0, margin=0.03), weight=0.15),
+                RewardTerm(
+                    name="engine_avoidance",
+                    reward=BoxAvoidance(box=ENGINE, width=7.0, margin=0.03, follows=follows),
+                    weight=1.5,
+                ),
+            ),
+        },
+        randomization=Randomization(
+            starts=STARTS,
+            shifts=(BodyShift(bodies=("engine",), sigma=0.02), BodyShift(bodies=("block",), sigma=0.007)),
         ),
-    },
-    randomization=Randomization(
-        starts=STARTS,
-        shifts=(BodyShift(body="engine", sigma=0.02), BodyShift(body="block", sigma=0.007)),
-    ),
-    obstacle="engine",
-)
+        obstacle="engine",
+    )
+
+
+OBSTACLE_AVOIDANCE: Final = _task(follows="engine")
+"""The paper's task: the distance to the engine is that to the engine where it stands."""
+OBSTACLE_AVOIDANCE_PUBLISHED: Final = _task(follows=None)
+"""The published code's: the distance is that to the engine's nominal place."""

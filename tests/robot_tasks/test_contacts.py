@@ -46,6 +46,13 @@ def test_a_far_geom_is_not_touched(tool_over_table):
     assert monitor.tool_record() == ForceRecord()
 
 
+def test_a_monitor_that_has_seen_no_tick_reports_nothing(simulation):
+    monitor = ContactMonitor(simulation)
+    monitor.check()
+    assert monitor.touch_record() == ContactRecord()
+    assert monitor.tool_record() == ForceRecord()
+
+
 def test_an_overlap_is_a_touch_with_force_and_depth(tool_over_table):
     monitor = settle(tool_over_table(-0.001))
     record = monitor.touch_record()
@@ -84,25 +91,74 @@ def test_contacts_close_in_time_are_one_touch_and_later_ones_another(tool_over_t
 
 def test_only_a_present_contact_is_prolonged(tool_over_table):
     simulation = tool_over_table(-0.001)
-    simulation.sensor_history("touch_table")[:, 3] = -0.001
+    touch, force = simulation.sensor_history("touch_table"), simulation.sensor_history("tool_force")
+    touch[:, 3], force[:] = -0.001, (0.0, 3.0, 4.0)
     simulation.sensor_history("deepest")[:] = -0.001
-    simulation.sensor_history("tool_force")[:] = (0.0, 3.0, 4.0)
     monitor = ContactMonitor(simulation)
     monitor.observe()
     assert monitor.touch_record(held=2.0).seconds == pytest.approx(2.02)
     assert monitor.tool_record(held=2.0).impulse == pytest.approx(5.0 * 2.02)
+    assert monitor.tool_record(held=2.0).seconds == pytest.approx(2.02)
+    touch[:, 3], force[:] = 0.001, 0.0
     simulation.sensor_history("deepest")[:] = 0.001
     monitor.observe()
     assert monitor.touch_record(held=2.0).seconds == pytest.approx(0.02)
     assert monitor.tool_record(held=2.0).impulse == pytest.approx(5.0 * 0.02)
+    assert monitor.tool_record(held=2.0).seconds == pytest.approx(0.02)
 
 
-def test_bodies_that_are_inside_each_other_are_an_error(tool_over_table):
+def test_records_hold_the_extremes_of_all_steps_and_all_things_touched(tool_over_table):
+    simulation = tool_over_table(0.1)
+    table, engine = (simulation.sensor_history(f"touch_{name}") for name in ("table", "engine"))
+    deepest, force = simulation.sensor_history("deepest"), simulation.sensor_history("tool_force")
+    table[:, 3] = engine[:, 3] = 0.001
+    table[3], engine[7] = (30.0, 0.0, 0.0, -0.0002), (50.0, 0.0, 0.0, -0.0001)
+    deepest[:], force[:] = -0.0002, 0.0
+    force[3] = (0.0, 0.0, 30.0)
+    monitor = ContactMonitor(simulation)
+    simulation.data.time = 0.02
+    monitor.observe()
+    record = monitor.touch_record()
+    assert (record.touches, record.peak_force, record.deepest_penetration) == (1, 50.0, 0.0002)
+    assert record.seconds == pytest.approx(2 * 0.002)
+    assert monitor.tool_record().peak == 30.0
+    assert monitor.tool_record().mean == pytest.approx(30.0)
+
+
+def test_the_load_is_the_mean_over_the_last_tick_of_the_larger_of_tool_and_touch(tool_over_table):
+    simulation = tool_over_table(0.1)
+    simulation.sensor_history("deepest")[:] = -0.001
+    force, touch = simulation.sensor_history("tool_force"), simulation.sensor_history("touch_table")
+    touch[:, 3], force[:] = 0.001, 0.0
+    monitor = ContactMonitor(simulation)
+    force[:5] = (0.0, 6.0, 8.0)
+    monitor.observe()
+    assert monitor.load == pytest.approx(5.0)
+    touch[:8] = (20.0, 0.0, 0.0, -0.001)
+    monitor.observe()
+    assert monitor.load == pytest.approx(16.0)
+    touch[:, 3], force[:] = 0.001, 0.0
+    monitor.observe()
+    assert monitor.load == 0.0
+
+
+@pytest.mark.parametrize("n_ticks_after", [0, 5])
+def test_bodies_that_were_inside_each_other_are_an_error(tool_over_table, n_ticks_after):
     simulation = tool_over_table(-0.03)
     monitor = ContactMonitor(simulation)
     mujoco.mj_step(simulation.model, simulation.data, 10)
-    with pytest.raises(SimulationError, match=r"two bodies overlap by \d\d\.\d mm, 10 at most mean anything"):
+    monitor.observe()
+    for _ in range(n_ticks_after):
+        simulation.sensor_history("deepest")[:] = 0.001
+        simulation.data.time += TICK
         monitor.observe()
+    message = r"simulation at t = 0.0\d\d s: two bodies overlap by \d\d\.\d mm, 10 at most mean anything"
+    with pytest.raises(SimulationError, match=message):
+        monitor.check()
+
+
+def test_bodies_that_overlap_little_are_no_error(tool_over_table):
+    settle(tool_over_table(-0.001), n_ticks=3).check()
 
 
 def test_clearance_is_the_distance_of_the_nearest_part(tool_over_table):

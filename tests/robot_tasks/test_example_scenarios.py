@@ -30,7 +30,8 @@ def case(request):
 def test_a_scenario_is_named_after_its_task_and_file(case):
     task, scenario, path = case
     assert scenario["application_name"] == f"{task.name}_{path.stem}"
-    assert scenario["evaluator"]["function"] == f"robot_tasks:{task.name}"
+    function = f"{task.name}_real" if path.stem.startswith("real_") else task.name
+    assert scenario["evaluator"]["function"] == f"robot_tasks:{function}"
 
 
 def test_parameters_and_bounds_are_those_of_the_task(case):
@@ -54,11 +55,33 @@ def test_objectives_are_those_of_the_task_and_maximized(case):
 def test_all_scenarios_of_a_task_share_budget_and_reference_point(case):
     _, scenario, path = case
     base = load(path.with_name("no_prior.json"))
-    for key in ("seed", "budget", "objectives", "evaluator"):
+    for key in ("seed", "objectives"):
         assert scenario[key] == base[key]
+    assert scenario["budget"]["evaluations"] == base["budget"]["evaluations"]
+
+
+def test_simulations_share_the_evaluator_and_the_batch(case):
+    _, scenario, path = case
+    base = load(path.with_name("no_prior.json"))
+    if not path.stem.startswith("real_"):
+        assert (scenario["budget"], scenario["evaluator"]) == (base["budget"], base["evaluator"])
+
+
+@pytest.mark.parametrize(("task", "replicates"), [("peg_insertion", 3), ("obstacle_avoidance", 1)])
+@pytest.mark.parametrize("prior", ["no_prior", "operator_prior"])
+def test_a_stand_in_is_tuned_one_at_a_time_with_few_replicates(task, replicates, prior):
+    scenario = load(FOLDER / task / f"real_{prior}.json")
+    assert scenario["budget"]["batch_size"] == 1
+    assert scenario["evaluator"]["replicates"] == replicates
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_task_has_the_five_variants_of_the_paper(task):
+    variants = {"no_prior", "operator_prior", "misleading_prior", "random_search", "prior_sampling"}
+    assert variants <= {path.stem for path in (FOLDER / task).glob("*.json")}
 
 
 def test_either_all_parameters_have_a_prior_or_none(case):
     _, scenario, path = case
     has_prior = {"prior" in entry for entry in scenario["input_parameters"].values()}
-    assert has_prior == {path.stem not in ("no_prior", "random_search")}
+    assert has_prior == {not path.stem.endswith(("no_prior", "random_search"))}

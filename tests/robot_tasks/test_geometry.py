@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_tasks.geometry import Slerp, distance, rotation_angle
+from robot_tasks.geometry import TOOL_DOWN, Pose, Slerp, distance, moved, rotation_angle, turned
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 
@@ -39,3 +39,13 @@ def test_slerp_about_one_axis_turns_in_proportion(angle, fraction):
 def test_slerp_stays_a_unit_quaternion():
     slerp = Slerp((0.5, 0.5, 0.5, 0.5), (0.0, 0.6, 0.0, 0.8))
     assert [np.linalg.norm(slerp.at(f)) for f in (0.0, 0.3, 1.0)] == pytest.approx([1.0, 1.0, 1.0])
+
+
+def test_turning_a_pose_keeps_its_position_and_turns_it_about_the_vertical():
+    pose = Pose((1.0, 2.0, 3.0), TOOL_DOWN)
+    assert turned(pose, pi / 2) == Pose((1.0, 2.0, 3.0), pytest.approx((0.0, cos(pi / 4), sin(pi / 4), 0.0)))
+    assert turned(Pose((0.0, 0.0, 0.0), about_z(0.1)), 0.2).quaternion == pytest.approx(about_z(0.3))
+
+
+def test_moving_a_pose_adds_to_its_position_and_keeps_its_orientation():
+    assert moved(Pose((1.0, 2.0, 3.0), TOOL_DOWN), (0.5, 0.0, -1.0)) == Pose((1.5, 2.0, 2.0), TOOL_DOWN)

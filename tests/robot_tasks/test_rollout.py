@@ -1,5 +1,7 @@
 """Tests for rollout.py."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,14 @@ from robot_tasks.evaluation import measure
 from robot_tasks.rollout import rollout
 from robot_tasks.simulation import Simulation
 from robot_tasks.tasks import TASKS
-from tests.robot_tasks.conftest import LOWERED_ONTO_THE_ENGINE, OPERATOR_MEANS, STRAIGHT_THROUGH_THE_ENGINE
+from tests.robot_tasks.conftest import (
+    LOWERED_ONTO_THE_ENGINE,
+    OPERATOR_MEANS,
+    PUSHES_INTO_THE_CORNER,
+    SEARCHES_FOR_THE_HOLE,
+    STRAIGHT_THROUGH_THE_ENGINE,
+)
+from tests.robot_tasks.skills.scripted import FAILURE, RUNNING, SUCCESS, Scripted
 
 TASK = TASKS["obstacle_avoidance"]
 NEVER_CROSSES = OPERATOR_MEANS | {"mp2_threshold": 1.5}
@@ -101,3 +110,83 @@ def test_bodies_that_get_into_each_other_end_the_rollout_as_an_error(simulation,
     monkeypatch.setattr("robot_tasks.contacts.DEEPEST_OVERLAP", 1e-4)
     with pytest.raises(SimulationError, match=r"simulation at t = .* s: two bodies overlap by .* mm"):
         run(simulation, STRAIGHT_THROUGH_THE_ENGINE)
+
+
+@pytest.mark.parametrize("start", ["s0", "s3"])
+def test_an_early_end_is_harmless_after_an_insertion(peg_simulation, start):
+    task = TASKS["peg_insertion"]
+    variation = task.randomization.nominal(start)
+    early, full = (
+        rollout(task, SEARCHES_FOR_THE_HOLE, variation, peg_simulation, stop_when_still=stop) for stop in (True, False)
+    )
+    assert early.simulated_seconds < 12.0 < full.simulated_seconds
+    for term in task.terms:
+        assert term.total(early) == pytest.approx(term.total(full), rel=1e-3)
+
+
+def at_full_and_half_step(task, parameters):
+    full = Simulation.from_scene(task.scene)
+    half = Simulation.from_scene(task.scene, timestep=full.model.opt.timestep / 2)
+    return [rollout(task, parameters, task.randomization.nominal("s0"), simulation) for simulation in (full, half)]
+
+
+def test_half_the_physics_step_inserts_at_the_same_time():
+    coarse, fine = at_full_and_half_step(TASKS["peg_insertion"], SEARCHES_FOR_THE_HOLE)
+    assert fine.success_time == pytest.approx(coarse.success_time, abs=0.1)
+    assert fine.tip_positions[-1] == pytest.approx(coarse.tip_positions[-1], abs=1e-4)
+
+
+def test_half_the_physics_step_pushes_the_prism_to_the_same_place():
+    coarse, fine = at_full_and_half_step(TASKS["object_pushing"], PUSHES_INTO_THE_CORNER)
+    assert fine.object_poses[-1] == pytest.approx(coarse.object_poses[-1], abs=1e-4)
+
+
+class Answers:
+    """A relation that holds as a script says, sample by sample."""
+
+    def __init__(self, *answers):
+        self.answers = list(answers)
+
+    def holds(self, world):
+        return self.answers.pop(0)
+
+
+def run_idle(simulation, **changes):
+    task = replace(TASK, **{"build_tree": lambda parameters: Scripted(RUNNING), "duration": 0.5} | changes)
+    return rollout(task, {}, TASK.randomization.nominal("s0"), simulation, stop_when_still=False)
+
+
+@pytest.mark.parametrize(
+    ("answers", "success_time"),
+    [
+        pytest.param([False, False, True, True, True, True], 0.2, id="from some time on"),
+        pytest.param([True] * 6, 0.0, id="from the start"),
+        pytest.param([False, True, True, False, True, True], 0.4, id="lost in between: the last time counts"),
+        pytest.param([True, True, True, True, True, False], None, id="lost at the end"),
+        pytest.param([False] * 6, None, id="never"),
+    ],
+)
+def test_with_a_final_condition_success_is_its_holding_from_some_time_to_the_end(simulation, answers, success_time):
+    episode = run_idle(simulation, final_condition=Answers(*answers))
+    assert episode.success_time == pytest.approx(success_time)
+
+
+@pytest.mark.parametrize("status", [SUCCESS, FAILURE])
+@pytest.mark.parametrize("holds", [True, False])
+def test_with_a_final_condition_the_end_of_the_skill_does_not_matter(simulation, status, holds):
+    ended = {"build_tree": lambda parameters: Scripted(status), "final_condition": Answers(*[holds] * 6)}
+    assert run_idle(simulation, **ended).is_success is holds
+
+
+def test_an_episode_tells_how_its_bodies_were_shifted(peg_simulation):
+    task = TASKS["peg_insertion"]
+    variation = task.randomization.sample(np.random.default_rng(2))
+    assert rollout(task, SEARCHES_FOR_THE_HOLE, variation, peg_simulation).shifts == variation.shifts
+
+
+def test_the_pose_of_the_object_is_recorded_where_there_is_one(push_simulation, simulation):
+    task = TASKS["object_pushing"]
+    variation = task.randomization.sample(np.random.default_rng(2))
+    episode = rollout(task, PUSHES_INTO_THE_CORNER, variation, push_simulation)
+    assert episode.object_poses[0] == pytest.approx(np.concatenate(variation.objects["prism"]))
+    assert run_idle(simulation).object_poses is None

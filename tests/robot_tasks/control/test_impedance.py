@@ -1,47 +1,45 @@
 """Tests for impedance.py: the arm as a spring, in free space."""
 
-import mujoco
 import numpy as np
 import pytest
 
-from robot_tasks.control.impedance import POSTURE, ImpedanceController, posture_torque, self_motion, within_reach
+from robot_tasks.control.impedance import (
+    POSTURE,
+    ImpedanceController,
+    posture_torque,
+    self_motion,
+    within_reach,
+)
 from robot_tasks.geometry import Pose
-
-START = (0.56, 0.08, -0.15, -1.72, 1.07, 1.41, -0.69)
-TICK = 0.02
-
-
-class Arm:
-    """The arm holding its start pose, with a push at the tip."""
-
-    def __init__(self, simulation):
-        simulation.reset()
-        simulation.place_arm(START)
-        self.simulation = simulation
-        self.tip = simulation.site_position("tool_tip")
-        self.pose = Pose(tuple(self.tip.tolist()), simulation.site_quaternion("tool_tip"))
-        self.controller = ImpedanceController(simulation)
-        self.tool = simulation.id_of("body", "tool_body")
-
-    def run(self, seconds, push=(0.0, 0.0, 0.0)):
-        model, data = self.simulation.model, self.simulation.data
-        for _ in range(round(seconds / TICK)):
-            data.xfrc_applied[self.tool, :3] = push
-            data.xfrc_applied[self.tool, 3:] = np.cross(self.tip - data.xipos[self.tool], push)
-            self.controller.update(self.pose, TICK)
-            mujoco.mj_step(model, data, 10)
-        mujoco.mj_kinematics(model, data)
-        return self.tip - self.pose.position
+from robot_tasks.simulation import TICK
+from tests.robot_tasks.arm import START, Arm, tip_jacobian
 
 
 @pytest.fixture
 def arm(simulation):
+    simulation.reset()
+    simulation.place_arm(START)
     return Arm(simulation)
 
 
-@pytest.mark.parametrize("push", [(10.0, 0.0, 0.0), (0.0, -10.0, 0.0), (0.0, 0.0, 10.0), (4.0, 5.0, 6.0)])
-def test_a_push_deflects_the_tip_by_force_over_stiffness(arm, push):
-    assert arm.run(4.0, push) == pytest.approx(np.divide(push, 400.0), abs=5e-5)
+@pytest.mark.parametrize("stiffness", [400.0, 700.0])
+@pytest.mark.parametrize(
+    "push",
+    [
+        pytest.param((10.0, 0.0, 0.0), id="x"),
+        pytest.param((0.0, -10.0, 0.0), id="y"),
+        pytest.param((0.0, 0.0, 10.0), id="z"),
+        pytest.param((4.0, 5.0, -6.0), id="askew"),
+    ],
+)
+def test_a_push_deflects_the_tip_by_force_over_stiffness(arm, stiffness, push):
+    arm.controller.aim_stiffness((stiffness, stiffness, stiffness, 50.0))
+    assert arm.run(5.0, push) == pytest.approx(np.divide(push, stiffness), abs=5e-5)
+
+
+def test_axes_of_different_stiffness_deflect_each_by_their_own(arm):
+    arm.controller.aim_stiffness((500.0, 700.0, 400.0, 50.0))
+    assert arm.run(5.0, (5.0, 7.0, -4.0)) == pytest.approx([0.01, 0.01, -0.01], abs=5e-5)
 
 
 def test_a_stiffer_spring_deflects_less_after_its_ramp(arm):
@@ -60,6 +58,15 @@ def test_a_feed_forward_force_ramps_up_and_pushes_like_a_hand(arm):
     assert arm.run(4.0) == pytest.approx([0.0, 0.0, -8.0 / 400.0], abs=5e-5)
 
 
+def test_a_force_compensation_is_added_to_a_vertical_force_and_not_reported(arm):
+    arm.controller = ImpedanceController(arm.simulation, force_compensation=-5.0)
+    arm.controller.aim_force((0.0, 0.0, -7.0))
+    assert arm.run(5.0) == pytest.approx([0.0, 0.0, -12.0 / 400.0], abs=5e-5)
+    assert arm.controller.force == (0.0, 0.0, -7.0)
+    arm.controller.aim_force((4.0, 0.0, 0.0))
+    assert arm.run(5.0) == pytest.approx([0.01, 0.0, 0.0], abs=5e-5)
+
+
 def test_the_tip_does_not_drift_while_the_elbow_moves_to_its_posture(arm):
     before = arm.simulation.data.qpos[2]
     assert arm.run(6.0) == pytest.approx([0.0, 0.0, 0.0], abs=1e-5)
@@ -68,7 +75,7 @@ def test_the_tip_does_not_drift_while_the_elbow_moves_to_its_posture(arm):
 
 def test_the_tip_keeps_its_orientation_under_a_push(arm):
     arm.run(4.0, (10.0, 10.0, 0.0))
-    quaternion = arm.simulation.site_quaternion("tool_tip")
+    quaternion = arm.simulation.pose_of("tool_tip").quaternion
     assert abs(np.dot(quaternion, arm.pose.quaternion)) == pytest.approx(1.0, abs=1e-6)
 
 
@@ -126,13 +133,9 @@ def test_self_motion_leaves_the_tip_at_rest(simulation, seed):
     simulation.reset()
     joints = np.random.default_rng(seed).uniform(-1.9, 1.9, 7)
     simulation.place_arm(joints)
-    jacobian = np.zeros((6, 7))
-    mujoco.mj_jacSite(
-        simulation.model, simulation.data, jacobian[:3], jacobian[3:], simulation.id_of("site", "tool_tip")
-    )
     motion = np.array(self_motion(joints))
     assert np.linalg.norm(motion) > 1e-3
-    assert jacobian @ (motion / np.linalg.norm(motion)) == pytest.approx(np.zeros(6), abs=1e-9)
+    assert tip_jacobian(simulation) @ (motion / np.linalg.norm(motion)) == pytest.approx(np.zeros(6), abs=1e-9)
 
 
 def test_posture_torque_does_no_work_on_the_tip_and_pulls_to_the_posture():

@@ -1,11 +1,20 @@
 """Tests for obstacle_avoidance.py: magnitudes of its objectives and how good and bad parameters fare."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from robot_tasks.evaluation import measure
 from robot_tasks.rollout import rollout
-from robot_tasks.tasks.obstacle_avoidance import ENGINE, GOAL, OBSTACLE_AVOIDANCE, STARTS, TABLE
+from robot_tasks.tasks.obstacle_avoidance import (
+    ENGINE,
+    GOAL,
+    OBSTACLE_AVOIDANCE,
+    OBSTACLE_AVOIDANCE_PUBLISHED,
+    STARTS,
+    TABLE,
+)
 from tests.robot_tasks.conftest import LOWERED_ONTO_THE_ENGINE, OPERATOR_MEANS, STRAIGHT_THROUGH_THE_ENGINE
 
 TASK = OBSTACLE_AVOIDANCE
@@ -83,3 +92,18 @@ def test_a_collision_ends_no_charge(simulation, bad):
         assert len(rewards) == 120
         assert (rewards < 0.0).all()
         assert rewards[-1] == pytest.approx(rewards[60], rel=1e-2)
+
+
+def test_the_charge_knows_where_the_engine_is(make_episode):
+    beside_the_engine = make_episode([(-0.48, 0.03, 0.7)] * 2, shifts={"engine": (0.02, -0.02, 0.0)})
+    charge = measure(TASK, beside_the_engine)["engine_avoidance"]
+    assert charge == pytest.approx(-1.5 / (7.0 * (0.1 + 0.03) ** 2))
+    published_charge = measure(OBSTACLE_AVOIDANCE_PUBLISHED, beside_the_engine)["engine_avoidance"]
+    assert published_charge == pytest.approx(-1.5 / (7.0 * (0.12 + 0.03) ** 2))
+
+
+def test_the_published_code_differs_in_what_the_charge_knows_of_the_engine_alone():
+    table, engine = TASK.objectives["safety"]
+    blind = replace(engine, reward=replace(engine.reward, follows=None))
+    assert engine.reward.follows == "engine"
+    assert replace(TASK, objectives=TASK.objectives | {"safety": (table, blind)}) == OBSTACLE_AVOIDANCE_PUBLISHED
