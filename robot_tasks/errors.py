@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 
 class RobotTasksError(Exception):
@@ -62,3 +62,50 @@ class SimulationError(RobotTasksError, RuntimeError):
 
     def __init__(self, time: float, problem: str) -> None:
         super().__init__(f"simulation at t = {time:.3f} s: {problem}. Report the configuration and the seed as a bug.")
+
+
+class OptionError(RobotTasksError, ValueError):
+    """An option of a picture is out of its range.
+
+    Parameters
+    ----------
+    option
+        Name of the option.
+    given
+        What was given.
+    allowed
+        What is allowed, as the end of a sentence.
+    """
+
+    def __init__(self, option: str, given: object, allowed: str) -> None:
+        super().__init__(f"{option}: got {given}. Give {allowed}.")
+
+
+class MissingPackageError(RobotTasksError, ImportError):
+    """A package that only some commands need is not installed.
+
+    Parameters
+    ----------
+    package
+        Name of the package to install.
+    """
+
+    def __init__(self, package: str) -> None:
+        super().__init__(f"pictures need the package {package}. Run: pip install 'hypermap-lite[robot]'")
+
+
+class GraphicsError(RobotTasksError, RuntimeError):
+    """There is no OpenGL to draw with off the screen.
+
+    Parameters
+    ----------
+    problems
+        What went wrong with each way to OpenGL that was tried.
+    """
+
+    def __init__(self, problems: Mapping[str, str]) -> None:
+        tried = "; ".join(f"{backend}: {problem}" for backend, problem in problems.items())
+        super().__init__(
+            f"no off-screen OpenGL ({tried}). Install libegl1 and libgl1-mesa-dri (names of Debian and Ubuntu), or"
+            " libosmesa6 and set MUJOCO_GL=osmesa. Neither needs a display or a graphics card."
+        )
