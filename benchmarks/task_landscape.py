@@ -141,13 +141,11 @@ def front_row(rows: list[dict[str, str]], task: str) -> tuple[str, ...]:
     points, _, _ = select(rows, task, "uniform")
     best = front(points)
     spread = np.ptp(best, axis=0) / np.ptp(points, axis=0)
-    low, median, high = worst_on_fronts(points, BUDGETS[task])
-    return (
-        task,
-        str(len(best)),
-        " and ".join(f"{100 * s:.0f} %" for s in spread),
-        ", ".join(f"{m:.5g} ({a:.5g} to {b:.5g})" for a, m, b in zip(low, median, high, strict=True)),
-    )
+    worst = []
+    for source in ("uniform", "operator"):
+        low, median, high = worst_on_fronts(select(rows, task, source)[0], BUDGETS[task])
+        worst.append(", ".join(f"{m:.5g} ({a:.5g} to {b:.5g})" for a, m, b in zip(low, median, high, strict=True)))
+    return (task, str(len(best)), " and ".join(f"{100 * s:.0f} %" for s in spread), *worst)
 
 
 def draw_scatter(rows: list[dict[str, str]], task: str, path: Path) -> None:
@@ -185,9 +183,11 @@ def page(rows: list[dict[str, str]]) -> str:
         "",
         "Spread: how far the ends of the front are apart, as a share of the range over all configurations.",
         f"Worst values: of the fronts of {N_SUBSETS} random subsets of one run's budget, median (5 % to 95 %).",
+        "The reference points of the scenarios are the worse of the two medians, rounded.",
         "",
         *markdown_table(
-            ("task", "points", "spread", "worst values on a front"), [front_row(rows, task) for task in TASKS]
+            ("task", "points", "spread", "worst values on a front, uniform", "operator's prior"),
+            [front_row(rows, task) for task in TASKS],
         ),
         "",
         f"Rollouts that ended in an error of the simulation: {failures}.",

@@ -46,6 +46,8 @@ ONLY_IN = {
     "referencing": ("hypermap_lite.scenario.schemas",),
     "moocore": ("hypermap_lite.pareto",),
     "rich": ("hypermap_lite.cli",),
+    "av": ("robot_tasks.render",),
+    "PIL": ("robot_tasks.render",),
     "robot_tasks": ("robot_tasks",),
 }
 """Packages and the only places that import them."""
