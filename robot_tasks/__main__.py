@@ -115,7 +115,8 @@ def _evaluate(options: argparse.Namespace) -> Iterator[str]:
 def _render(options: argparse.Namespace) -> Iterator[str]:
     wanted = os.environ.pop("MUJOCO_GL", None)  # a backend that is not installed would break the import of MuJoCo
     from robot_tasks.evaluation import find_task
-    from robot_tasks.render import View, outcome, render_clip, render_strip
+    from robot_tasks.offscreen import View
+    from robot_tasks.render import outcome, render_clip, render_strip
 
     if wanted is not None:
         os.environ["MUJOCO_GL"] = wanted

@@ -1,6 +1,5 @@
 """Tests for render.py: files are read back; pictures are small."""
 
-import os
 import sys
 
 import av
@@ -8,10 +7,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from robot_tasks import render
 from robot_tasks.errors import GraphicsError, MissingPackageError, OptionError, SimulationError, UnknownNameError
 from robot_tasks.evaluation import evaluate
-from robot_tasks.render import CAPTION_LINES, COLUMNS, GAP, OffScreen, View, outcome, render_clip, render_strip
+from robot_tasks.offscreen import OffScreen, View
+from robot_tasks.render import CAPTION_LINES, COLUMNS, GAP, outcome, render_clip, render_strip
 from robot_tasks.simulation import Simulation
 from robot_tasks.tasks import TASKS
 from tests.robot_tasks.conftest import OPERATOR_MEANS
@@ -181,32 +180,3 @@ def test_a_missing_package_is_an_error_that_says_how_to_install_it(tmp_path, mon
         monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(MissingPackageError, match=r"pip install 'hypermap-lite\[robot\]'"):
         function(TASK, OPERATOR_MEANS, tmp_path / name)
-
-
-def test_without_opengl_the_error_says_what_was_tried_and_what_to_install(simulation, monkeypatch):
-    def fail(backend, model):
-        os.environ["PYOPENGL_PLATFORM"] = backend
-        raise OSError("no driver\nand more")
-
-    monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setattr(render, "_open_backend", fail)
-    monkeypatch.setattr(render, "_forget_opengl", lambda: None)
-    monkeypatch.delenv("MUJOCO_GL", raising=False)
-    monkeypatch.delenv("PYOPENGL_PLATFORM", raising=False)
-    with pytest.raises(GraphicsError, match=r"\(egl: no driver; osmesa: no driver\)\. Install libegl1"):
-        OffScreen(simulation, SMALL)
-    assert not {"MUJOCO_GL", "PYOPENGL_PLATFORM"} & set(os.environ)
-
-
-@pytest.mark.parametrize(
-    ("wanted", "platform", "backends"),
-    [
-        pytest.param(None, "linux", ("egl", "osmesa"), id="unset"),
-        pytest.param("on", "linux", ("egl", "osmesa"), id="no backend's name"),
-        pytest.param(" OSMesa ", "linux", ("osmesa",), id="wanted"),
-        pytest.param(None, "darwin", ("cgl",), id="macOS"),
-    ],
-)
-def test_the_environment_chooses_the_backend(monkeypatch, wanted, platform, backends):
-    monkeypatch.setattr(sys, "platform", platform)
-    assert render._backends(wanted) == backends
