@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from reporting import machine, markdown_table
+from scipy.stats import t
 from variants import SKILLS, parameters_of
 
 from robot_tasks.evaluation import load, measure
@@ -26,8 +27,6 @@ from robot_tasks.simulation import Simulation
 from robot_tasks.tasks import TASKS
 
 STEPS = (0.0005, 0.001, 0.002)
-STUDENT_T = 2.0
-"""Quantile of the t distribution for a 95 % interval with 60 rollouts."""
 COLUMNS = ("task", "skill", "step", "seed", "first_objective", "second_objective", "success", "tool_peak_force")
 
 FloatArray = npt.NDArray[np.float64]
@@ -52,10 +51,10 @@ def summary(table: Mapping[tuple[str, str, float], FloatArray]) -> Iterator[tupl
     """Yield a line per task, skill and step; columns of a table are objectives, success and peak force."""
     for (task, skill, step), values in table.items():
         finest = table[task, skill, STEPS[0]]
-        half_width = STUDENT_T * finest[:, :2].std(axis=0, ddof=1) / np.sqrt(len(finest))
+        half_width = t.ppf(0.975, len(finest) - 1) * finest[:, :2].std(axis=0, ddof=1) / np.sqrt(len(finest))
         mean, finest_mean = values[:, :2].mean(axis=0), finest[:, :2].mean(axis=0)
         is_within = bool((np.abs(mean - finest_mean) <= half_width).all())
-        interval = STUDENT_T * values[:, :2].std(axis=0, ddof=1) / np.sqrt(len(values))
+        interval = t.ppf(0.975, len(values) - 1) * values[:, :2].std(axis=0, ddof=1) / np.sqrt(len(values))
         yield (
             task,
             skill,

@@ -72,3 +72,16 @@ object_pushing_real: Final = RolloutFunction("object_pushing", "real")
 obstacle_avoidance: Final = RolloutFunction("obstacle_avoidance")
 obstacle_avoidance_as_published_code: Final = RolloutFunction("obstacle_avoidance", "published_code")
 obstacle_avoidance_real: Final = RolloutFunction("obstacle_avoidance", "real")
+
+_SUFFIXES: Final = {"_as_published_code": "published_code", "_real": "real"}
+
+
+def __getattr__(name: str) -> RolloutFunction:
+    """Make the function of a task that has no name above, such as one you have just added to the table."""
+    from robot_tasks.evaluation import VARIANTS
+
+    suffix = next((suffix for suffix in _SUFFIXES if name.endswith(suffix)), "")
+    task, variant = name.removesuffix(suffix), _SUFFIXES.get(suffix, "paper")
+    if task not in VARIANTS[variant]:
+        raise AttributeError(f"module 'robot_tasks' has no attribute '{name}'")
+    return RolloutFunction(task, variant)

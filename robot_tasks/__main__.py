@@ -13,7 +13,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
-from robot_tasks.errors import RobotTasksError
+from robot_tasks.errors import MissingPackageError, RobotTasksError
 
 if TYPE_CHECKING:  # both load MuJoCo, for which --help does not wait
     from robot_tasks.randomization import Randomization
@@ -30,6 +30,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         for line in options.run(options):
             print(line)
+    except ModuleNotFoundError as error:
+        if error.name != "mujoco":
+            raise
+        print(f"error: {MissingPackageError('mujoco')}", file=sys.stderr)
+        return 2
     except (RobotTasksError, OSError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -49,7 +54,7 @@ def _parser() -> argparse.ArgumentParser:
     for command in (show, evaluate, render):
         _add_configuration(command)
     for command in (evaluate, render):
-        command.add_argument("--seed", type=int, default=0, help="start state and places of bodies (default 0)")
+        command.add_argument("--seed", type=_seed, default=0, help="start state and places of bodies (default 0)")
     _add_picture(render)
     return parser
 
@@ -78,6 +83,13 @@ def _add_picture(command: argparse.ArgumentParser) -> None:
     command.add_argument("--fps", type=int, default=20, help="frames per second of a clip (default 20)")
     command.add_argument("--speed", type=float, default=1.0, help="of a clip: 2 is twice as fast as life (default 1)")
     command.add_argument("--frames", type=int, default=6, help="number of frames of a strip (default 6)")
+
+
+def _seed(text: str) -> int:
+    seed = int(text)
+    if seed < 0:
+        raise argparse.ArgumentTypeError(f"{seed} is negative; give 0 or more")
+    return seed
 
 
 def _list(options: argparse.Namespace) -> Iterator[str]:

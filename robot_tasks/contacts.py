@@ -47,7 +47,7 @@ class ContactMonitor:
         self._tool_force = simulation.sensor_history("tool_force")
         self._deepest = simulation.sensor_history("deepest")
         touch_names = [name for name in simulation.names("sensor") if name.startswith(TOUCH)]
-        self._touches = [simulation.sensor_history(name) for name in touch_names]
+        self._touches = {name: simulation.sensor_history(name) for name in touch_names}
         self._seconds_per_step = float(simulation.model.opt.timestep)
         self._ticks: list[FloatArray] = []
         self._times: list[float] = []
@@ -61,7 +61,7 @@ class ContactMonitor:
     def load(self) -> float:
         """Force in [N] on tool or arm, averaged over the last tick: impacts as one feels them who stands by."""
         tool = np.linalg.norm(self._tool_force, axis=1).mean()
-        touches = [(sensor[:, 0] * (sensor[:, 3] < 0.0)).mean() for sensor in self._touches]
+        touches = [(sensor[:, 0] * (sensor[:, 3] < 0.0)).mean() for sensor in self._touches.values()]
         return float(max(tool, *touches)) if touches else float(tool)
 
     def check(self) -> None:
@@ -84,7 +84,7 @@ class ContactMonitor:
         """Return the unwanted contacts so far, a present one prolonged by a time in [s]."""
         if not (self._touches and self._ticks):
             return ContactRecord()
-        readings = np.stack([self._readings(sensor) for sensor in self._touches])  # (n_sensors, n_steps, 4)
+        readings = np.stack([self._readings(sensor) for sensor in self._touches.values()])  # (n_sensors, n_steps, 4)
         forces, distances = readings[:, :, 0], readings[:, :, 3]
         is_touching: NDArray[np.bool_] = np.any(distances < 0.0, axis=0)
         if not is_touching.any():
@@ -97,6 +97,13 @@ class ContactMonitor:
             peak_force=float(forces[distances < 0.0].max()),
             deepest_penetration=-float(distances.min()),
         )
+
+    def overlap_with(self, geom: str) -> float:
+        """Return the largest overlap so far of arm or tool with a geom that has a touch sensor, in [m], else zero."""
+        sensor = self._touches.get(TOUCH + geom)
+        if sensor is None or not self._ticks:
+            return 0.0
+        return max(0.0, -float(self._readings(sensor)[:, 3].min()))
 
     def tool_record(self, *, held: float = 0.0) -> ForceRecord:
         """Return the forces on the tool so far, the present one prolonged by a time in [s]."""

@@ -115,7 +115,7 @@ class Episode:
 
     @property
     def is_success(self) -> bool:
-        """Whether the skill ever succeeded."""
+        """Whether the task was achieved."""
         return self.success_time is not None
 
     @property

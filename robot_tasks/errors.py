@@ -49,6 +49,23 @@ class ParameterError(RobotTasksError, ValueError):
         super().__init__(f"task '{task}', parameter '{parameter}': {problem}. Give {allowed}.")
 
 
+class GapError(RobotTasksError, ValueError):
+    """A number of a reality gap has no meaning, or names something that does not exist.
+
+    Parameters
+    ----------
+    key
+        Name of the number.
+    problem
+        What is wrong and what was given.
+    allowed
+        What is allowed, as the end of a sentence.
+    """
+
+    def __init__(self, key: str, problem: str, allowed: str) -> None:
+        super().__init__(f"reality gap, '{key}': {problem}. Give {allowed}.")
+
+
 class SimulationError(RobotTasksError, RuntimeError):
     """The physics left the range in which its numbers mean anything.
 

@@ -15,7 +15,7 @@ from robot_tasks.simulation import Simulation
 from robot_tasks.tasks import PUBLISHED, STAND_INS, TASKS, Task
 
 PAPER: Final = "paper"
-VARIANTS: Final[Mapping[str, Mapping[str, Task]]] = {PAPER: TASKS, "published_code": PUBLISHED, "real": STAND_INS}
+VARIANTS: Final[dict[str, Mapping[str, Task]]] = {PAPER: TASKS, "published_code": PUBLISHED, "real": STAND_INS}
 """Tasks as the paper means them; as its published code computes them; on a stand-in for the real robot."""
 
 
@@ -45,9 +45,16 @@ def find_task(name: str, variant: str = PAPER) -> Task:
     """
     if variant not in VARIANTS:
         raise UnknownNameError("variant", variant, VARIANTS)
+    if name not in TASKS:
+        raise UnknownNameError("task", name, TASKS)
     if name not in VARIANTS[variant]:
-        raise UnknownNameError("task", name, VARIANTS[variant])
+        raise UnknownNameError(f"variant of task '{name}'", variant, variants_of(name))
     return VARIANTS[variant][name]
+
+
+def variants_of(name: str) -> tuple[str, ...]:
+    """List the variants that a task has."""
+    return tuple(variant for variant, tasks in VARIANTS.items() if name in tasks)
 
 
 def load(task: Task, *, timestep: float | None = None) -> Simulation:

@@ -48,6 +48,7 @@ class Recorder:
         self._tip = simulation.site_position(TIP)
         self._joints = simulation.data.qpos[:N_JOINTS]
         self._object = task.object_body
+        self._obstacle = task.obstacle
         self._clearance = Clearance(simulation, task.obstacle) if task.obstacle else None
         self._final_condition = task.final_condition
         self._n_samples = 1 + round(task.duration / SAMPLE_SECONDS)
@@ -85,7 +86,6 @@ class Recorder:
         table = np.array(self._samples + self._samples[-1:] * n_missing)
         held = 0.0 if is_stopped else n_missing * SAMPLE_SECONDS
         contact = self.contacts.touch_record(held=held)
-        clearance = self._clearance.smallest if self._clearance else np.inf
         return Episode(
             times=np.linspace(0.0, (self._n_samples - 1) * SAMPLE_SECONDS, self._n_samples),
             tip_positions=table[:, 0:3],
@@ -96,8 +96,15 @@ class Recorder:
             shifts=self._shifts,
             success_time=self.success_time,
             simulated_seconds=(len(self._samples) - 1) * SAMPLE_SECONDS,
-            clearance=min(clearance, -contact.deepest_penetration or np.inf) if self._clearance else np.inf,
+            clearance=self._smallest_clearance(),
             contact=contact,
             tool_contact=self.contacts.tool_record(held=held),
             interventions=int(is_stopped),
         )
+
+    def _smallest_clearance(self) -> float:
+        """Return the smallest distance at a sample, or the largest overlap at any step, as a negative number."""
+        if self._obstacle is None or self._clearance is None:
+            return np.inf
+        overlap = self.contacts.overlap_with(self._obstacle)
+        return min(self._clearance.smallest, -overlap) if overlap else self._clearance.smallest

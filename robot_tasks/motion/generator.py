@@ -64,9 +64,8 @@ class MotionGenerator:
 
     def is_finished(self, time: float) -> bool:
         """Tell whether the reference stands still at the goal from this time in [s] on."""
-        if self._overlay is not None or self._offset(time) != _NO_OFFSET:
-            return False
-        return time - self._started >= self._trajectory.duration
+        is_shifting = not self._overlay.is_still if self._overlay is not None else self._offset(time) != _NO_OFFSET
+        return not is_shifting and time - self._started >= self._trajectory.duration
 
     def _offset(self, time: float) -> Vector:
         """Return the overlay's offset, or what is left of the last one."""

@@ -13,6 +13,11 @@ class Overlay(Protocol):
     Overlays are compared by value: one that equals the present one goes on, any other starts afresh.
     """
 
+    @property
+    def is_still(self) -> bool:
+        """Whether the offset is zero at all times."""
+        ...
+
     def offset(self, time: float) -> Vector:
         """Return the offset in world axes in [m] at a time in [s] since the overlay began, zero at time zero."""
         ...

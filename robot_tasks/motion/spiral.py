@@ -43,13 +43,18 @@ class ArchimedesSpiral:
     def __str__(self) -> str:
         return f"spiral, pitch {self.pitch:g} m, {self.speed:g} m/s, radius up to {self.radius:g} m"
 
+    @property
+    def is_still(self) -> bool:
+        """Whether pitch, speed or radius leave no motion."""
+        return min(self.pitch, self.speed, self.radius) < NOTHING
+
     def offset(self, time: float) -> Vector:
         """Return the offset in world axes in [m] at a time in [s] since the start.
 
         With b = pitch / (2 pi), the way out solves b theta^2 / 2 + `CORE` theta = speed t; the way in is the way out
         backwards in time, with the angle going on.
         """
-        if min(self.pitch, self.speed, self.radius) < NOTHING:
+        if self.is_still:
             return 0.0, 0.0, 0.0
         b = self.pitch / (2.0 * pi)
         widest = self.radius / b  # angle at the largest radius

@@ -2,7 +2,7 @@
 
 from robot_tasks.skills.behaviour import Behaviour, Condition, SkillContext, Status, World
 from robot_tasks.skills.composites import NoFail, ParallelFf, ParallelFs, Selector, SelectorStar, Serial, SerialStar
-from robot_tasks.skills.conditions import At, Not, Relation, Upright, Within
+from robot_tasks.skills.conditions import At, Not, PointsDown, Relation, Within
 from robot_tasks.skills.primitives import (
     ApplyForce,
     ChangeStiffness,
@@ -28,6 +28,7 @@ __all__ = [
     "ParallelFf",
     "ParallelFs",
     "ParameterKind",
+    "PointsDown",
     "PositionDistance",
     "Relation",
     "Selector",
@@ -40,7 +41,6 @@ __all__ = [
     "SkillDescription",
     "SkillParameter",
     "Status",
-    "Upright",
     "Within",
     "World",
 ]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import degrees
+from math import cos, degrees
 from typing import Protocol
 
-from robot_tasks.geometry import Pose, Quaternion, Vector, distance, rotation_angle
+from robot_tasks.geometry import Pose, Vector, distance, rotation_angle
 from robot_tasks.skills.behaviour import World
 
 
@@ -48,22 +48,22 @@ class At:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Upright:
-    """A thing keeps an orientation, but for an angle, wherever it is."""
+class PointsDown:
+    """The z axis of a thing, that of a tool out of its flange, points straight down but for an angle."""
 
     thing: str
     """Name of a body or site of the scene."""
-    orientation: Quaternion
-    """Quaternion w, x, y, z to keep."""
     angle: float
-    """Largest rotation in [rad]."""
+    """Largest tilt in [rad]."""
 
     def holds(self, world: World) -> bool:
-        """Tell whether the thing has the orientation."""
-        return rotation_angle(world.pose_of(self.thing).quaternion, self.orientation) < self.angle
+        """Tell whether the tilt is small enough; a turn about the vertical does not count."""
+        _, x, y, _ = world.pose_of(self.thing).quaternion
+        cosine = 2.0 * (x * x + y * y) - 1.0  # of the angle between the axis and straight down
+        return cosine > cos(self.angle)
 
     def __str__(self) -> str:
-        return f"upright({self.thing}) within {degrees(self.angle):g} deg"
+        return f"points_down({self.thing}) within {degrees(self.angle):g} deg"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

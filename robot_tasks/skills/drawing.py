@@ -51,9 +51,9 @@ def _branches(behaviour: Behaviour) -> Iterator[str]:
 
 
 def _parameters(description: SkillDescription) -> list[str]:
-    """Return name, type, kind and meaning of each parameter, in columns."""
-    rows = [(p.name, p.value, p.kind.value, p.description) for p in description.parameters]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)][:3]
+    """Return name, type, unit, kind and meaning of each parameter, in columns."""
+    rows = [(p.name, p.value_type.__name__, p.unit, p.kind.value, p.description) for p in description.parameters]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)][:4]
     return ["  ".join(f"{cell:<{width}}" for cell, width in zip(row, [*widths, 0], strict=True)) for row in rows]
 
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from math import radians
+from functools import partial
+from math import inf, radians
 from typing import Final
 
-from robot_tasks.geometry import TOOL_DOWN, Pose, Stiffness
+from robot_tasks.geometry import Pose, Stiffness
 from robot_tasks.motion.spiral import ArchimedesSpiral
 from robot_tasks.names import TIP
 from robot_tasks.skills.behaviour import Behaviour
 from robot_tasks.skills.composites import ParallelFs, Selector, Serial, SerialStar
-from robot_tasks.skills.conditions import At, Not, Upright
+from robot_tasks.skills.conditions import At, Not, PointsDown, Within
 from robot_tasks.skills.primitives import (
     ApplyForce,
     ChangeStiffness,
@@ -32,16 +33,14 @@ OBJECT_TOLERANCE: Final = 0.03
 """Distance of an object to its goal in [m] that counts as arrived."""
 OBJECT_ANGLE_TOLERANCE: Final = radians(10.0)
 """Angle of an object to its goal in [rad] that counts as arrived."""
+APPROACH_RADIUS: Final = 0.2
+"""Half the width in [m] of the region above a hole from which an insertion may begin."""
 LARGEST_TILT: Final = radians(15.0)
 """Tilt of a peg in [rad] beyond which it would jam or break something."""
 
-_LEARNED: Final = ParameterKind.LEARNED
-_REQUIRED: Final = ParameterKind.REQUIRED
-_OPTIONAL: Final = ParameterKind.OPTIONAL
-
 
 def pass_over_obstacle(
-    first: Pose, second: Pose, goal: Pose, *, clear_height: float, passed_y: float, success_distance: float
+    first: Pose, second: Pose, goal: Pose, *, clear_height: float, passed_y: float, success_distance: float = 0.05
 ) -> Skill:
     """Move over an obstacle through two way-points, deciding at every tick which goal to head for.
 
@@ -70,12 +69,12 @@ def pass_over_obstacle(
         name="pass_over_obstacle",
         description="Move over an obstacle through two way-points.",
         parameters=(
-            SkillParameter(name="first", kind=_LEARNED, value="pose", description="Way-point to rise to"),
-            SkillParameter(name="second", kind=_LEARNED, value="pose", description="Way-point beyond the obstacle"),
-            SkillParameter(name="clear_height", kind=_LEARNED, value="m", description="Height from which to cross"),
-            SkillParameter(name="passed_y", kind=_LEARNED, value="m", description="World y below which to descend"),
-            SkillParameter(name="goal", kind=_REQUIRED, value="pose", description="Where the tip is to arrive"),
-            SkillParameter(name="success_distance", kind=_OPTIONAL, value="m", description="How near is near enough"),
+            _learned("first", Pose, "Way-point to rise to"),
+            _learned("second", Pose, "Way-point beyond the obstacle"),
+            _learned("clear_height", float, "Height from which to cross", unit="m"),
+            _learned("passed_y", float, "World y below which to descend", unit="m"),
+            _required("goal", Pose, "Where the tip is to arrive"),
+            _optional("success_distance", float, "How near is near enough", unit="m"),
         ),
         preconditions=(Not(tip_at_goal),),
         postconditions=(tip_at_goal,),
@@ -91,9 +90,7 @@ def pass_over_obstacle(
     return Skill(description, body)
 
 
-def insert_peg(
-    goal: Pose, *, force: float, search: ArchimedesSpiral, success_distance: float, container: str = "block"
-) -> Skill:
+def insert_peg(goal: Pose, *, force: float, search: ArchimedesSpiral, success_distance: float = 0.04) -> Skill:
     """Press a peg onto a surface and search on a spiral until it drops into the hole.
 
     Horizontally the tip follows the spiral around the goal; vertically only the force acts.
@@ -108,26 +105,24 @@ def insert_peg(
         The spiral, which already runs during the descent.
     success_distance
         Distance of the tip to the goal's position in [m] that ends the skill.
-    container
-        What has the hole.
 
     Returns
     -------
     Skill
-        Succeeds near the goal; fails if it starts there or if the peg tilts.
+        Succeeds near the goal; fails if it does not start above it, or if the peg tilts.
     """
-    tip_in_hole = At(thing=TIP, place=goal, place_name=container, distance=success_distance)
+    tip_in_hole = At(thing=TIP, place=goal, place_name="hole", distance=success_distance)
     description = SkillDescription(
         name="insert_peg",
         description="Press a peg onto a surface and search on a spiral until it drops into a hole.",
         parameters=(
-            SkillParameter(name="force", kind=_LEARNED, value="N", description="Force along world z"),
-            SkillParameter(name="search", kind=_LEARNED, value="spiral", description="Pitch, path speed and radius"),
-            SkillParameter(name="goal", kind=_REQUIRED, value="pose", description="Where the inserted tip is"),
-            SkillParameter(name="success_distance", kind=_OPTIONAL, value="m", description="How near is near enough"),
+            _learned("force", float, "Force along world z", unit="N"),
+            _learned("search", ArchimedesSpiral, "Pitch, path speed and radius"),
+            _required("goal", Pose, "Where the inserted tip is"),
+            _optional("success_distance", float, "How near is near enough", unit="m"),
         ),
-        preconditions=(Not(tip_in_hole),),
-        holdconditions=(Upright(thing=TIP, orientation=TOOL_DOWN, angle=LARGEST_TILT),),
+        preconditions=(Not(tip_in_hole), _above(goal)),
+        holdconditions=(PointsDown(thing=TIP, angle=LARGEST_TILT),),
         postconditions=(tip_in_hole,),
     )
     body = ParallelFs(
@@ -140,7 +135,7 @@ def insert_peg(
     return Skill(description, body)
 
 
-def push_object(start: Pose, goal: Pose, *, thing: str, goal_site: str, arrival_distance: float) -> Skill:
+def push_object(start: Pose, goal: Pose, *, thing: str, goal_site: str, arrival_distance: float = 0.05) -> Skill:
     """Put the tool down beside an object and push it along a straight line.
 
     Parameters
@@ -168,11 +163,11 @@ def push_object(start: Pose, goal: Pose, *, thing: str, goal_site: str, arrival_
         name="push_object",
         description="Put the tool down beside an object and push it along a straight line.",
         parameters=(
-            SkillParameter(name="start", kind=_LEARNED, value="pose", description="Where the push begins"),
-            SkillParameter(name="goal", kind=_LEARNED, value="pose", description="Where the tool heads for"),
-            SkillParameter(name="thing", kind=_REQUIRED, value="body", description="What is pushed"),
-            SkillParameter(name="goal_site", kind=_REQUIRED, value="site", description="Where it is to arrive"),
-            SkillParameter(name="arrival_distance", kind=_OPTIONAL, value="m", description="How near is near enough"),
+            _learned("start", Pose, "Where the push begins"),
+            _learned("goal", Pose, "Where the tool heads for"),
+            _required("thing", str, "What is pushed"),
+            _required("goal_site", str, "Where it is to arrive"),
+            _optional("arrival_distance", float, "How near is near enough", unit="m"),
         ),
         preconditions=(Not(object_at_goal),),
         postconditions=(object_at_goal, At(thing=TIP, place=goal, place_name="goal", distance=arrival_distance)),
@@ -187,3 +182,20 @@ def push_object(start: Pose, goal: Pose, *, thing: str, goal_site: str, arrival_
 def _go_to(pose: Pose, arrival_distance: float) -> Behaviour:
     """Move straight to a pose until near it."""
     return ParallelFs(SetGoalPose(pose), PositionDistance(pose.position, threshold=arrival_distance))
+
+
+def _above(goal: Pose) -> Within:
+    """Tell that the tip is above a goal in the depth of a hole, and not far off."""
+    x, y, z = goal.position
+    low = (x - APPROACH_RADIUS, y - APPROACH_RADIUS, z)
+    high = (x + APPROACH_RADIUS, y + APPROACH_RADIUS, inf)
+    return Within(thing=TIP, low=low, high=high, region_name="above hole")
+
+
+def _parameter(kind: ParameterKind, name: str, value_type: type, description: str, *, unit: str = "") -> SkillParameter:
+    return SkillParameter(name=name, kind=kind, value_type=value_type, unit=unit, description=description)
+
+
+_learned = partial(_parameter, ParameterKind.LEARNED)
+_required = partial(_parameter, ParameterKind.REQUIRED)
+_optional = partial(_parameter, ParameterKind.OPTIONAL)

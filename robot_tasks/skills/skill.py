@@ -26,8 +26,10 @@ class SkillParameter:
 
     name: str
     kind: ParameterKind
-    value: str
-    """Kind of value and unit, as in ``"m"``, ``"N"`` or ``"pose"``."""
+    value_type: type
+    """Type of the value."""
+    unit: str = ""
+    """Unit of a number, as in ``"m"``."""
     description: str
 
 

@@ -30,7 +30,7 @@ STARTS: Final = {
     "s3": (0.50, 0.17, -0.15, -1.72, 1.09, 1.42, -0.80),
     "s4": (0.52, 0.26, -0.15, -1.55, 1.09, 1.44, -0.72),
 }
-"""Joint angles in [rad] with the tool straight down, 0.3 m above the block and up to 87 mm beside the hole."""
+"""Joint angles in [rad] with the tool straight down, 0.3 m above the block and up to 86 mm beside the hole."""
 
 
 def build_tree(

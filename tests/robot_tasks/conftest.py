@@ -24,9 +24,9 @@ STANDS_ON_THE_BLOCK = SEARCHES_FOR_THE_HOLE | {"PathVelocity": 0.0}
 
 PUSHES_INTO_THE_CORNER = {
     "offset_x_start": 0.09,
-    "offset_y_start": 0.149,
-    "offset_x_goal": -0.124,
-    "offset_y_goal": -0.14,
+    "offset_y_start": 0.15,
+    "offset_x_goal": -0.12,
+    "offset_y_goal": -0.05,
 }
 PUSHES_PAST_THE_CORNER = {
     "offset_x_start": 0.03,

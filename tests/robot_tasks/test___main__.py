@@ -88,7 +88,7 @@ def test_show_gives_the_tree_at_the_middle_of_the_bounds_and_the_conditions_of_t
     output = capsys.readouterr().out
     assert "  Skill pass_over_obstacle\n  └─ ParallelFs\n     ├─ Selector\n" in output
     assert "CoordinateAtLeast z, 1 m\n" in output
-    assert "    clear_height      m     learned   Height from which to cross\n" in output
+    assert "    clear_height      float  m  learned   Height from which to cross\n" in output
     assert "  pre-conditions, at the start\n    not at(tool_tip, goal) within 0.05 m\n" in output
 
 
@@ -181,3 +181,16 @@ def test_help_does_not_wait_for_mujoco():
     code = "import sys, robot_tasks.__main__; print('mujoco' in sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout == "False\n"
+
+
+def test_a_negative_seed_is_a_mistake_of_the_command_line(parameters_file, capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["evaluate", TASK, "--parameters", parameters_file, "--seed", "-1"])
+    assert "argument --seed: -1 is negative; give 0 or more" in capsys.readouterr().err
+
+
+def test_without_mujoco_the_error_says_how_to_install_it(monkeypatch, capsys):
+    error = ModuleNotFoundError("No module named 'mujoco'", name="mujoco")
+    monkeypatch.setattr("robot_tasks.__main__._list", lambda options: (_ for _ in ()).throw(error))
+    assert main(["list"]) == 2
+    assert "pip install 'hypermap-lite[robot]'" in capsys.readouterr().err

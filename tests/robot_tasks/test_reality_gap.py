@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from robot_tasks.errors import GapError, UnknownNameError
 from robot_tasks.geometry import Pose
 from robot_tasks.reality_gap import RealityGap, read_gaps
 from robot_tasks.rollout import rollout
@@ -48,7 +49,7 @@ def test_a_factor_on_friction_acts_on_sliding_of_geoms_and_of_pairs():
     rough = Simulation.from_scene(scene, modify=RealityGap(friction=1.4).apply).model
     assert rough.geom_friction[:, 0] == pytest.approx(1.4 * plain.geom_friction[:, 0])
     assert (rough.geom_friction[:, 1:] == plain.geom_friction[:, 1:]).all()
-    assert plain.npair == 3
+    assert plain.npair == 1
     assert rough.pair_friction[:, :2] == pytest.approx(1.4 * plain.pair_friction[:, :2])
     assert (rough.pair_friction[:, 2:] == plain.pair_friction[:, 2:]).all()
 
@@ -146,8 +147,8 @@ def test_a_robot_that_was_stopped_stays_where_it_is_and_is_charged_to_the_end():
 
 
 def test_a_stand_in_is_the_task_across_its_gap_with_every_body_in_its_place():
-    gaps = read_gaps()
-    assert set(gaps) == set(STAND_INS) == set(TASKS)
+    gaps = read_gaps(TASKS)
+    assert set(gaps) == set(STAND_INS)
     for name, stand_in in STAND_INS.items():
         assert stand_in.gap == gaps[name] != RealityGap()
         assert stand_in.randomization.shifts == ()
@@ -156,22 +157,53 @@ def test_a_stand_in_is_the_task_across_its_gap_with_every_body_in_its_place():
 
 
 @pytest.mark.parametrize(
-    "differences",
+    ("differences", "message"),
     [
-        {"friction": 0.0},
-        {"payload": -0.1},
-        {"joint_damping": -0.1},
-        {"joint_stiction": -0.1},
-        {"command_delay": -0.002},
-        {"force_limit": 0.0},
+        pytest.param({"friction": 0.0}, "'friction': 0 is out of range. Give a positive number", id="friction"),
+        pytest.param({"force_limit": 0.0}, "'force_limit': 0 is out of range. Give a positive number", id="limit"),
+        pytest.param({"payload": -0.1}, "'payload': -0.1 is out of range. Give a finite number", id="payload"),
+        pytest.param({"payload": np.nan}, "'payload': nan is out of range. Give a finite number", id="nan"),
+        pytest.param({"joint_damping": -0.1}, "'joint_damping': -0.1 is out of range", id="damping"),
+        pytest.param({"joint_stiction": np.inf}, "'joint_stiction': inf is out of range", id="stiction"),
+        pytest.param({"command_delay": -0.002}, "'command_delay': -0.002 is out of range", id="delay"),
+        pytest.param({"force_compensation": np.nan}, "'force_compensation': nan is not finite", id="compensation"),
+        pytest.param({"sensing_delay": 0.03}, "'sensing_delay': 0.03 s. Give a multiple of a tick", id="tick"),
     ],
 )
-def test_a_gap_without_physical_meaning_is_refused(differences):
-    with pytest.raises(ValueError, match=r"RealityGap.*: friction and force_limit must be positive, the rest but "):
+def test_a_gap_without_physical_meaning_names_the_number_and_what_is_allowed(differences, message):
+    with pytest.raises(GapError, match=rf"reality gap, {message}"):
         RealityGap(**differences)
 
 
-def test_a_sensing_delay_is_a_multiple_of_a_tick():
+@pytest.mark.parametrize(
+    ("differences", "message"),
+    [
+        ({"command_delay": 0.005}, "'command_delay': 0.005 s. Give a multiple of the physics step of 0.002 s"),
+        ({"offsets": {"engin": (0.0, 0.0, 0.0)}}, "'offsets': the scene has no body 'engin'. Give names of its bodies"),
+    ],
+    ids=["delay", "body"],
+)
+def test_a_gap_that_does_not_fit_the_scene_is_refused(differences, message):
+    with pytest.raises(GapError, match=rf"reality gap, {message}"):
+        load(**differences)
+
+
+def test_a_sensing_delay_is_counted_in_ticks():
     assert RealityGap(sensing_delay=0.06).ticks_of_sensing_delay == 3
-    with pytest.raises(ValueError, match=r"sensing_delay 0.03 s is no multiple of a tick of 0.02 s"):
-        RealityGap(sensing_delay=0.03)
+
+
+@pytest.mark.parametrize(
+    ("gaps", "message"),
+    [
+        ({"peg_insertio": {}}, "unknown task in reality_gaps.json 'peg_insertio'. .* Did you mean 'peg_insertion'"),
+        (
+            {"peg_insertion": {"frictio": 1.0}},
+            "key of task 'peg_insertion' in .* 'frictio'. .* 'friction'",
+        ),
+    ],
+    ids=["task", "key"],
+)
+def test_a_name_in_the_file_that_does_not_exist_is_named_with_those_that_do(monkeypatch, gaps, message):
+    monkeypatch.setattr("robot_tasks.reality_gap.json.loads", lambda text: gaps)
+    with pytest.raises(UnknownNameError, match=message):
+        read_gaps(TASKS)

@@ -54,6 +54,25 @@ def test_an_early_end_is_as_harmless_for_random_parameters(simulation, seed):
         assert term.total(early) == pytest.approx(term.total(full), rel=1e-3)
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("name", ["peg_insertion", "object_pushing"])
+def test_an_early_end_is_as_harmless_in_contact(request, name, seed):
+    task, rng = TASKS[name], np.random.default_rng(seed)
+    simulation = request.getfixturevalue({"peg_insertion": "peg_simulation", "object_pushing": "push_simulation"}[name])
+    parameters = {parameter.name: rng.uniform(parameter.low, parameter.high) for parameter in task.parameters}
+    variation = task.randomization.sample(rng)
+    early, full = (rollout(task, parameters, variation, simulation, stop_when_still=stop) for stop in (True, False))
+    for term in task.terms:
+        assert term.total(early) == pytest.approx(term.total(full), rel=1e-3)
+
+
+def test_a_peg_that_does_not_search_ends_early(peg_simulation):
+    task = TASKS["peg_insertion"]
+    parameters = {"PathVelocity": 0.0, "PathDistance": 0.01, "Radius": 0.02, "Force": -10.0}
+    episode = rollout(task, parameters, task.randomization.nominal("s0"), peg_simulation)
+    assert episode.simulated_seconds < 10.0
+
+
 def test_the_grid_has_a_sample_every_tenth_of_a_second(simulation):
     episode = run(simulation, OPERATOR_MEANS)
     assert episode.times == pytest.approx(np.arange(121) / 10)

@@ -41,6 +41,10 @@ class Drift:
 
     speed: float
 
+    @property
+    def is_still(self):
+        return self.speed == 0.0
+
     def offset(self, time):
         return self.speed * time, 0.0, 0.0
 
@@ -70,3 +74,9 @@ def test_the_offset_of_an_overlay_that_ended_fades_at_5_centimetres_per_second()
     assert not generator.is_finished(2.9)
     assert generator.reference(3.1).position == (0.0, 0.0, 1.0)
     assert generator.is_finished(3.1)
+
+
+def test_an_overlay_without_motion_does_not_keep_the_reference_from_standing_still():
+    generator = MotionGenerator(START)
+    generator.set_overlay(Drift(0.0), 0.0)
+    assert generator.is_finished(0.0)

@@ -4,8 +4,8 @@ from math import cos, inf, radians, sin
 
 import pytest
 
-from robot_tasks.geometry import TOOL_DOWN, Pose
-from robot_tasks.skills.conditions import At, Not, Upright, Within, first_violated
+from robot_tasks.geometry import Pose
+from robot_tasks.skills.conditions import At, Not, PointsDown, Within, first_violated
 from tests.robot_tasks.skills.scripted import Scene
 
 
@@ -51,16 +51,16 @@ def test_a_place_given_by_name_is_where_the_world_has_it(goal, holds):
 @pytest.mark.parametrize(
     ("tilt", "holds"), [(0.0, True), (14.9, True), (-14.9, True), (15.1, False), (-15.1, False), (180.0, False)]
 )
-def test_a_thing_is_upright_within_an_angle_wherever_it_is(tilt, holds):
+def test_a_tool_points_down_within_an_angle_wherever_it_is(tilt, holds):
     half = radians(tilt) / 2
     tool = Pose((1.0, 2.0, 3.0), (-sin(half), cos(half), 0.0, 0.0))  # turned further about world x than straight down
-    assert Upright(thing="tool", orientation=TOOL_DOWN, angle=radians(15)).holds(Scene(tool=tool)) is holds
+    assert PointsDown(thing="tool", angle=radians(15)).holds(Scene(tool=tool)) is holds
 
 
-def test_a_turn_about_the_vertical_counts_for_being_upright_too():
-    half = radians(20) / 2
+def test_a_turn_about_the_vertical_is_no_tilt():
+    half = radians(120) / 2
     tool = Pose((0.0, 0.0, 0.0), (0.0, cos(half), sin(half), 0.0))
-    assert not Upright(thing="tool", orientation=TOOL_DOWN, angle=radians(15)).holds(Scene(tool=tool))
+    assert PointsDown(thing="tool", angle=radians(1)).holds(Scene(tool=tool))
 
 
 @pytest.mark.parametrize(("z", "holds"), [(-5.0, True), (0.69, True), (0.7, False)])
@@ -73,7 +73,7 @@ def test_within_is_a_box_that_may_be_open(z, holds):
 def test_relations_read_like_predicates():
     assert str(CORNER) == "at(prism, corner) within 0.03 m and 10 deg"
     assert str(Not(CORNER)) == "not at(prism, corner) within 0.03 m and 10 deg"
-    assert str(Upright(thing="tool_tip", orientation=TOOL_DOWN, angle=radians(15))) == "upright(tool_tip) within 15 deg"
+    assert str(PointsDown(thing="tool_tip", angle=radians(15))) == "points_down(tool_tip) within 15 deg"
     assert str(Within(thing="pin", low=(0, 0, 0), high=(1, 1, 1), region_name="hole")) == "within(pin, hole)"
 
 

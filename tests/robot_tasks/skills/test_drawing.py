@@ -24,12 +24,12 @@ Skill pass_over_obstacle
 DESCRIPTION = """\
 pass_over_obstacle: Move over an obstacle through two way-points.
   parameters
-    first             pose  learned   Way-point to rise to
-    second            pose  learned   Way-point beyond the obstacle
-    clear_height      m     learned   Height from which to cross
-    passed_y          m     learned   World y below which to descend
-    goal              pose  required  Where the tip is to arrive
-    success_distance  m     optional  How near is near enough
+    first             Pose      learned   Way-point to rise to
+    second            Pose      learned   Way-point beyond the obstacle
+    clear_height      float  m  learned   Height from which to cross
+    passed_y          float  m  learned   World y below which to descend
+    goal              Pose      required  Where the tip is to arrive
+    success_distance  float  m  optional  How near is near enough
   pre-conditions, at the start
     not at(tool_tip, goal) within 0.05 m
   post-conditions, on success

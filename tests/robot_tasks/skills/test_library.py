@@ -1,12 +1,13 @@
 """Tests for library.py: what each skill demands of a scripted robot, tick by tick."""
 
+from inspect import Parameter, signature
 from math import cos, radians, sin
 
 import pytest
 
 from robot_tasks.geometry import TOOL_DOWN, Pose
 from robot_tasks.motion import ArchimedesSpiral
-from robot_tasks.skills import Status
+from robot_tasks.skills import ParameterKind, Status
 from robot_tasks.skills.library import insert_peg, pass_over_obstacle, push_object
 from tests.robot_tasks.skills.scripted import context
 
@@ -106,7 +107,7 @@ def test_an_insertion_beside_the_hole_needs_the_distance_in_space(insertion):
 def test_an_insertion_refuses_to_start_in_the_hole(insertion):
     here = context((-0.6, 0.0, 0.68))
     assert insertion.tick(here) is Status.FAILURE
-    assert str(insertion.violated) == "not at(tool_tip, block) within 0.04 m"
+    assert str(insertion.violated) == "not at(tool_tip, hole) within 0.04 m"
     assert (here.stiffness, here.force, here.overlay) == (DEFAULT_STIFFNESS, NO_FORCE, None)
 
 
@@ -123,7 +124,13 @@ def test_the_tilt_is_named_as_the_reason_of_the_failure(insertion):
     here = context((-0.6, 0.0, 0.75))
     here.world["tool_tip"] = Pose((-0.6, 0.0, 0.75), (1.0, 0.0, 0.0, 0.0))
     assert insertion.tick(here) is Status.FAILURE
-    assert str(insertion.violated) == "upright(tool_tip) within 15 deg"
+    assert str(insertion.violated) == "points_down(tool_tip) within 15 deg"
+
+
+@pytest.mark.parametrize("tip", [(-0.6, 0.25, 0.9), (-0.9, 0.0, 0.9), (-0.6, 0.09, 0.6)])
+def test_an_insertion_starts_only_above_the_hole(insertion, tip):
+    assert insertion.tick(context(tip)) is Status.FAILURE
+    assert str(insertion.violated) == "within(tool_tip, above hole)"
 
 
 BESIDE = Pose((-0.27, 0.63, 0.61), TOOL_DOWN)
@@ -205,3 +212,23 @@ def test_a_push_refuses_to_start_with_its_object_at_the_goal(push, here):
     here.world["prism"] = PRISM_GOAL
     assert push.tick(here) is Status.FAILURE
     assert str(push.violated) == "not at(prism, prism_goal) within 0.03 m and 10 deg"
+
+
+@pytest.mark.parametrize(
+    ("build", "skill"),
+    [
+        pytest.param(
+            pass_over_obstacle, pass_over_obstacle(FIRST, SECOND, GOAL, clear_height=1, passed_y=0), id="pass"
+        ),
+        pytest.param(insert_peg, insert_peg(GOAL, force=-3.0, search=SPIRAL), id="insert"),
+        pytest.param(push_object, push_object(FIRST, GOAL, thing="prism", goal_site="goal"), id="push"),
+    ],
+)
+def test_a_skill_declares_what_it_is_told_and_only_optional_parameters_have_a_default(build, skill):
+    told = signature(build).parameters
+    declared = {parameter.name: parameter for parameter in skill.description.parameters}
+    assert set(declared) == set(told)
+    for name, parameter in declared.items():
+        has_default = told[name].default is not Parameter.empty
+        assert has_default == (parameter.kind is ParameterKind.OPTIONAL)
+        assert told[name].annotation == parameter.value_type.__name__

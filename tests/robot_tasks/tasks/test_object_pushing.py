@@ -115,10 +115,10 @@ def test_offsets_are_added_to_the_frames():
     here = context((-0.5, 0.4, 0.9), prism=PRISM_START, prism_goal=Pose(PRISM_GOAL, TOOL_DOWN))
     tree = TASK.build_tree(PUSHES_INTO_THE_CORNER)
     tree.tick(here)
-    assert here.goal == Pose(pytest.approx((-0.267, 0.633, 0.61)), TOOL_ALONG_HYPOTENUSE)
-    here.tip = (-0.267, 0.633, 0.62)
+    assert here.goal == Pose(pytest.approx((-0.267, 0.634, 0.61)), TOOL_ALONG_HYPOTENUSE)
+    here.tip = (-0.267, 0.634, 0.62)
     tree.tick(here)
-    assert here.goal == Pose(pytest.approx((-0.649, 0.01, 0.6)), TOOL_ALONG_HYPOTENUSE)
+    assert here.goal == Pose(pytest.approx((-0.645, 0.1, 0.6)), TOOL_ALONG_HYPOTENUSE)
 
 
 @pytest.mark.parametrize("seed", range(4))
