@@ -42,20 +42,18 @@ class ContactMonitor:
     """
 
     def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
         self._history = simulation.data.history
         self._tool_force = simulation.sensor_history("tool_force")
         self._deepest = simulation.sensor_history("deepest")
         touch_names = [name for name in simulation.names("sensor") if name.startswith(TOUCH)]
         self._touches = {name: simulation.sensor_history(name) for name in touch_names}
         self._seconds_per_step = float(simulation.model.opt.timestep)
+        self._start = simulation.time
         self._ticks: list[FloatArray] = []
-        self._times: list[float] = []
 
     def observe(self) -> None:
         """Take in the physics steps of one tick, at its end."""
         self._ticks.append(self._history.copy())
-        self._times.append(self._simulation.data.time)
 
     @property
     def load(self) -> float:
@@ -125,9 +123,9 @@ class ContactMonitor:
 
     def _step_times(self) -> FloatArray:
         """Return the time of every step in [s], shape (n_steps,)."""
-        n_steps = len(self._deepest)
-        before_end = np.arange(n_steps)[::-1] * self._seconds_per_step
-        return (np.array(self._times)[:, None] - before_end).ravel()
+        n_steps = len(self._deepest) * len(self._ticks)
+        times: FloatArray = self._start + np.arange(1.0, n_steps + 1.0) * self._seconds_per_step
+        return times
 
 
 class Clearance:

@@ -6,7 +6,6 @@ starred kinds remember, for one run, which children are done.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import ClassVar
 
 from robot_tasks.skills.behaviour import FAILURE, RUNNING, SUCCESS, Behaviour, SkillContext, Status
@@ -35,20 +34,40 @@ class Composite(Behaviour):
         return self._children
 
     def _terminate(self, context: SkillContext, status: Status) -> None:
-        _halt(self._children, context)
+        for child in self._children:
+            child.halt(context)
 
 
-class Serial(Composite):
+class _OneAtATime(Composite):
+    """Children of which one runs at most: the one that ran before is halted when another takes over."""
+
+    __slots__ = ("_running",)
+
+    def __init__(self, *children: Behaviour) -> None:
+        super().__init__(*children)
+        self._running: Behaviour | None = None
+
+    def _run(self, child: Behaviour | None, context: SkillContext) -> None:
+        if child is not self._running:
+            if self._running is not None:
+                self._running.halt(context)
+            self._running = child
+
+    def _terminate(self, context: SkillContext, status: Status) -> None:
+        self._run(None, context)
+
+
+class Serial(_OneAtATime):
     """Succeed once all children succeed in one tick; the first that does not, decides, and later ones are halted."""
 
     __slots__ = ()
 
     def _update(self, context: SkillContext) -> Status:
-        for position, child in enumerate(self._children, start=1):
+        for child in self._children:
             status = child.tick(context)
-            if status is RUNNING:
-                _halt(self._children[position:], context)
             if status is not SUCCESS:
+                if status is RUNNING:
+                    self._run(child, context)
                 return status
         return SUCCESS
 
@@ -78,16 +97,17 @@ class SerialStar(_Starred):
     _passes_on = SUCCESS
 
 
-class Selector(Composite):
+class Selector(_OneAtATime):
     """Follow the first child that runs or succeeds and halt later ones; fail if every child fails."""
 
     __slots__ = ()
 
     def _update(self, context: SkillContext) -> Status:
-        for position, child in enumerate(self._children, start=1):
+        for child in self._children:
             status = child.tick(context)
             if status is not FAILURE:
-                _halt(self._children[position:], context)
+                if status is RUNNING:
+                    self._run(child, context)
                 return status
         return FAILURE
 
@@ -143,9 +163,3 @@ class NoFail(Composite):
     def _update(self, context: SkillContext) -> Status:
         status = self._children[0].tick(context)
         return SUCCESS if status is FAILURE else status
-
-
-def _halt(children: Sequence[Behaviour], context: SkillContext) -> None:
-    for child in children:
-        if child.status is RUNNING:
-            child.halt(context)

@@ -91,15 +91,14 @@ class Skill(Behaviour):
         self.violated = None
 
     def _update(self, context: SkillContext) -> Status:
-        description = self.description
-        needed = description.holdconditions
         if self._is_fresh:
-            needed = description.preconditions + needed
             self._is_fresh = False
-        if self._is_violated(needed, context):
+            if self._is_violated(self.description.preconditions, context):
+                return FAILURE
+        if self._is_violated(self.description.holdconditions, context):
             return FAILURE
         status = self._body.tick(context)
-        if status is SUCCESS and self._is_violated(description.postconditions, context):
+        if status is SUCCESS and self._is_violated(self.description.postconditions, context):
             return FAILURE
         return status
 
