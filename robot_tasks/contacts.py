@@ -148,8 +148,10 @@ class Clearance:
         model = simulation.model
         is_robot = model.body_rootid == model.body_rootid[simulation.id_of("body", TOOL)]
         is_moving = model.body_weldid > 0
+        # A body without a geom that collides is one that cannot reach anything.
+        can_touch = np.bincount(model.geom_bodyid, model.geom_contype, model.nbody) > 0
         is_visible = model.geom_group < HIDDEN_GROUP
-        self._geoms = np.flatnonzero((is_robot & is_moving)[model.geom_bodyid] & is_visible).tolist()
+        self._geoms = np.flatnonzero((is_robot & is_moving & can_touch)[model.geom_bodyid] & is_visible).tolist()
         self.smallest = reach
 
     def observe(self) -> None:
