@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import os
 import re
@@ -21,15 +22,33 @@ if TYPE_CHECKING:  # both load MuJoCo, for which --help does not wait
 
 WIDTH: Final = 110
 """Columns of what `show` prints."""
+_GAP_UNITS: Final = {
+    "friction": "times",
+    "payload": "kg",
+    "joint_damping": "Nms/rad",
+    "joint_stiction": "Nm",
+    "command_delay": "s",
+    "sensing_delay": "s",
+    "offsets": "m",
+    "force_compensation": "N",
+    "force_limit": "N",
+}
 _LONG_NUMBER: Final = re.compile(r"\d+\.\d{5,}")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code: 0, or 2 for a usage error."""
+    """Run the command line and return its exit code: 0, 2 for a usage error, 130 after Ctrl-C."""
     options = _parser().parse_args(arguments)
     try:
         for line in options.run(options):
             print(line)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 130
+    except BrokenPipeError:  # whoever read, such as `head`, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except ModuleNotFoundError as error:
         if error.name != "mujoco":
             raise
@@ -61,7 +80,10 @@ def _parser() -> argparse.ArgumentParser:
 
 def _add_configuration(command: argparse.ArgumentParser) -> None:
     command.add_argument("task", metavar="TASK")
-    command.add_argument("--parameters", metavar="FILE", help="JSON object of numbers; - reads standard input")
+    command.add_argument(
+        "--parameters", metavar="FILE", help="JSON object of numbers (- reads standard input), or a run's pareto.csv"
+    )
+    command.add_argument("--trial", type=int, metavar="N", help="which row of a CSV file")
     command.add_argument(
         "--set", dest="settings", action="append", default=[], metavar="NAME=VALUE", help="one number; overrides FILE"
     )
@@ -86,10 +108,11 @@ def _add_picture(command: argparse.ArgumentParser) -> None:
 
 
 def _seed(text: str) -> int:
-    seed = int(text)
-    if seed < 0:
-        raise argparse.ArgumentTypeError(f"{seed} is negative; give 0 or more")
-    return seed
+    if not text.strip().lstrip("-").isdigit():
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number")
+    if int(text) < 0:
+        raise argparse.ArgumentTypeError(f"{text} is negative; give 0 or more")
+    return int(text)
 
 
 def _list(options: argparse.Namespace) -> Iterator[str]:
@@ -144,7 +167,7 @@ def _render(options: argparse.Namespace) -> Iterator[str]:
 
 def _configuration(options: argparse.Namespace) -> dict[str, float]:
     """Read the values of a file, if one is given, and override them by single settings; a task checks them."""
-    configuration = _read(options.parameters) if options.parameters else {}
+    configuration = _read_parameters(options) if options.parameters else {}
     for setting in options.settings:
         name, _, value = setting.partition("=")
         try:
@@ -156,7 +179,32 @@ def _configuration(options: argparse.Namespace) -> dict[str, float]:
     return configuration
 
 
-def _read(file: str) -> dict[str, float]:
+def _read_parameters(options: argparse.Namespace) -> dict[str, float]:
+    if not options.parameters.lower().endswith(".csv"):
+        return _read_json(options.parameters)
+    from robot_tasks.evaluation import find_task
+
+    names = [parameter.name for parameter in find_task(options.task, options.variant).parameters]
+    return _read_trial(options.parameters, options.trial, names)
+
+
+def _read_trial(file: str, trial: int | None, names: Sequence[str]) -> dict[str, float]:
+    """Read the parameters of one row of a history or a front."""
+    with Path(file).open(newline="", encoding="utf-8") as lines:
+        rows = {row.get("trial", str(position)): row for position, row in enumerate(csv.DictReader(lines))}
+    if trial is None and len(rows) == 1:
+        trial = int(next(iter(rows)))
+    if str(trial) not in rows:
+        problem = "which row?" if trial is None else f"no trial {trial}."
+        raise ValueError(f"{file}: {problem} Give --trial with one of {', '.join(rows)}.")
+    row = rows[str(trial)]
+    missing = [name for name in names if not row.get(name)]
+    if missing:
+        raise ValueError(f"{file}: no column {', '.join(missing)}. Give the file of a run of this task.")
+    return {name: float(row[name]) for name in names}
+
+
+def _read_json(file: str) -> dict[str, float]:
     text = sys.stdin.read() if file == "-" else Path(file).read_text(encoding="utf-8")
     try:
         configuration = json.loads(text)
@@ -203,7 +251,7 @@ def _gap(task: Task) -> Iterator[list[str]]:
     """Tell what a stand-in does differently, and which of its numbers an optimizer cannot know."""
     nothing = type(task.gap)()
     differences = [
-        f"  {field.name:<18}  {getattr(task.gap, field.name)}"
+        f"  {field.name:<18}  {getattr(task.gap, field.name)} {_GAP_UNITS.get(field.name, '')}".rstrip()
         for field in fields(task.gap)
         if getattr(task.gap, field.name) != getattr(nothing, field.name)
     ]

@@ -108,7 +108,7 @@ class MissingPackageError(RobotTasksError, ImportError):
     """
 
     def __init__(self, package: str) -> None:
-        super().__init__(f"pictures need the package {package}. Run: pip install 'hypermap-lite[robot]'")
+        super().__init__(f"the package {package} is not installed. Run: pip install 'hypermap-lite[robot]'")
 
 
 class GraphicsError(RobotTasksError, RuntimeError):

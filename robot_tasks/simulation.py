@@ -225,7 +225,15 @@ def load_scene(file_name: str) -> Any:
 
 
 def set_timestep(specification: Any, timestep: float) -> None:
-    """Change the physics step of a scene to a time in [s], and with it the length of its sensors' buffers."""
+    """Change the physics step of a scene to a time in [s], and with it the length of its sensors' buffers.
+
+    Raises
+    ------
+    ValueError
+        If a tick has no whole number of such steps.
+    """
+    if abs(round(TICK / timestep) * timestep - TICK) > 1e-9:
+        raise ValueError(f"a physics step of {timestep:g} s: a tick of {TICK:g} s must have a whole number of steps")
     specification.option.timestep = timestep
     for sensor in specification.sensors:
         if sensor.nsample:

@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -194,3 +195,55 @@ def test_without_mujoco_the_error_says_how_to_install_it(monkeypatch, capsys):
     monkeypatch.setattr("robot_tasks.__main__._list", lambda options: (_ for _ in ()).throw(error))
     assert main(["list"]) == 2
     assert "pip install 'hypermap-lite[robot]'" in capsys.readouterr().err
+
+
+FRONT = """\
+mp1_position_y,mp1_position_z,mp2_position_y,mp2_position_z,mp2_threshold,mp3_threshold,performance,trial
+0.7,1.1,0.0,1.0,0.95,0.05,2900,4
+0.6,1.2,0.0,1.0,0.95,0.05,2800,17
+"""
+
+
+def test_a_row_of_a_front_can_be_run_again(tmp_path, capsys):
+    file = tmp_path / "pareto.csv"
+    file.write_text(FRONT)
+    assert main(["evaluate", TASK, "--parameters", str(file), "--trial", "4", "--seed", "2"]) == 0
+    assert json.loads(capsys.readouterr().out) == evaluate(TASK, OPERATOR_MEANS, 2)
+
+
+@pytest.mark.parametrize(
+    ("task", "options", "message"),
+    [
+        pytest.param(TASK, [], "which row? Give --trial with one of 4, 17.", id="none"),
+        pytest.param(TASK, ["--trial", "5"], "no trial 5. Give --trial with one of 4, 17.", id="unknown"),
+        pytest.param("peg_insertion", ["--trial", "4"], "no column PathVelocity, .* of this task.", id="other task"),
+    ],
+)
+def test_a_row_that_is_not_there_is_named_with_those_that_are(tmp_path, capsys, task, options, message):
+    file = tmp_path / "pareto.csv"
+    file.write_text(FRONT)
+    assert main(["evaluate", task, "--parameters", str(file), *options]) == 2
+    assert re.search(message.replace("?", "[?]"), capsys.readouterr().err)
+
+
+def test_a_reader_that_has_seen_enough_is_no_error():
+    command = f"{sys.executable} -m robot_tasks show peg_insertion | head -n 1"
+    result = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
+    assert result.stdout.startswith("peg_insertion: ")
+    assert result.stderr == ""
+
+
+def test_ctrl_c_ends_with_130(monkeypatch, capsys):
+    def interrupted(options):
+        raise KeyboardInterrupt
+        yield
+
+    monkeypatch.setattr("robot_tasks.__main__._list", interrupted)
+    assert main(["list"]) == 130
+    assert capsys.readouterr().err == "stopped\n"
+
+
+def test_a_seed_is_a_whole_number(capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["evaluate", TASK, "--seed", "1.5"])
+    assert "argument --seed: '1.5' is no whole number" in capsys.readouterr().err

@@ -78,11 +78,11 @@ def test_every_variant_of_every_task_is_a_function_by_name():
 
 
 def test_a_task_that_was_just_added_is_a_function_too(monkeypatch):
-    lift = replace(TASKS["obstacle_avoidance"], name="lift")
-    monkeypatch.setitem(VARIANTS, "paper", {**TASKS, "lift": lift})
-    assert robot_tasks.lift == RolloutFunction("lift")
-    with pytest.raises(AttributeError, match="module 'robot_tasks' has no attribute 'lift_real'"):
-        robot_tasks.lift_real  # noqa: B018
+    mine = replace(TASKS["obstacle_avoidance"], name="a_task_of_mine")
+    monkeypatch.setitem(VARIANTS, "paper", {**TASKS, "a_task_of_mine": mine})
+    assert robot_tasks.a_task_of_mine == RolloutFunction("a_task_of_mine")
+    with pytest.raises(AttributeError, match="module 'robot_tasks' has no attribute 'a_task_of_mine_real'"):
+        robot_tasks.a_task_of_mine_real  # noqa: B018
 
 
 def test_a_task_without_a_variant_says_which_it_has(monkeypatch):

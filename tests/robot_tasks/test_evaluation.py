@@ -23,7 +23,13 @@ from tests.robot_tasks.conftest import (
 )
 
 every_case = pytest.mark.parametrize(
-    ("task", "variant"), [pytest.param(task, variant, id=f"{variant}-{task}") for variant in VARIANTS for task in TASKS]
+    ("task", "variant"),
+    [
+        pytest.param(task, variant, id=f"{variant}-{task}")
+        for variant, tasks in VARIANTS.items()
+        for task in GOOD_PARAMETERS
+        if task in tasks
+    ],
 )
 OTHERS = {
     "peg_insertion": STANDS_ON_THE_BLOCK,
@@ -80,7 +86,7 @@ OBJECTIVES_AND_TERMS = {
 }
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", GOOD_PARAMETERS)
 def test_the_evaluator_reports_objectives_terms_and_summary(task):
     columns = list(evaluate(task, GOOD_PARAMETERS[task]))
     assert columns[:6] == OBJECTIVES_AND_TERMS[task]
@@ -88,7 +94,7 @@ def test_the_evaluator_reports_objectives_terms_and_summary(task):
 
 
 def test_a_clearance_is_reported_where_there_is_an_obstacle():
-    reported = {task for task in TASKS if "clearance" in evaluate(task, GOOD_PARAMETERS[task])}
+    reported = {task for task in GOOD_PARAMETERS if "clearance" in evaluate(task, GOOD_PARAMETERS[task])}
     assert reported == {"obstacle_avoidance"}
 
 
@@ -120,7 +126,7 @@ def test_the_commanded_impulse_is_the_force_times_its_duration(make_episode):
     assert numbers["commanded_impulse"] == pytest.approx(5.0 * 3.0)
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", GOOD_PARAMETERS)
 def test_seeds_change_the_circumstances(task):
     results = {tuple(evaluate(task, GOOD_PARAMETERS[task], seed=seed).values()) for seed in range(5)}
     assert len(results) == 5
@@ -131,7 +137,7 @@ def test_circumstances_change_the_safety_of_good_parameters_by_less_than_a_fifth
     assert 0.0 < np.std(results) < 0.2 * abs(np.mean(results))
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", GOOD_PARAMETERS)
 def test_nothing_that_ran_before_has_an_influence(task):
     first = evaluate(task, GOOD_PARAMETERS[task], seed=4)
     evaluate(task, OTHERS[task], seed=0)
@@ -153,14 +159,14 @@ def test_a_fresh_simulation_gives_the_same_trajectory_bit_for_bit(task, variant)
 
 
 def test_a_fresh_process_computes_the_same_bits():
-    calls = [(task, OTHERS[task], variant) for task in TASKS for variant in VARIANTS]
+    calls = [(task, OTHERS[task], variant) for task in OTHERS for variant in VARIANTS]
     arguments = [sys.executable, "-c", IN_A_FRESH_PROCESS]
     output = subprocess.run(arguments, input=json.dumps(calls), capture_output=True, text=True, check=True).stdout
     here = [evaluate(task, parameters, seed=5, variant=variant) for task, parameters, variant in reversed(calls)]
     assert json.loads(output) == here[::-1]
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", GOOD_PARAMETERS)
 def test_threads_do_not_share_a_simulation(task):
     alone = [evaluate(task, GOOD_PARAMETERS[task], seed=seed) for seed in (0, 1)]
     with ThreadPoolExecutor(2) as pool:

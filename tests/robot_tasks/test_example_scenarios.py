@@ -75,8 +75,8 @@ def test_a_stand_in_is_tuned_one_at_a_time_with_few_replicates(task, replicates,
     assert scenario["evaluator"]["replicates"] == replicates
 
 
-@pytest.mark.parametrize("task", TASKS)
-def test_every_task_has_the_five_variants_of_the_paper(task):
+@pytest.mark.parametrize("task", ["peg_insertion", "object_pushing", "obstacle_avoidance"])
+def test_every_task_of_the_paper_has_the_five_variants_of_the_paper(task):
     variants = {"no_prior", "operator_prior", "misleading_prior", "random_search", "prior_sampling"}
     assert variants <= {path.stem for path in (FOLDER / task).glob("*.json")}
 

@@ -124,3 +124,8 @@ def test_divergence_is_an_error_and_not_a_silent_reset(tmp_path, monkeypatch):
     mujoco.mj_step(simulation.model, simulation.data)
     with pytest.raises(SimulationError, match="huge value in QVEL at DOF 0"):
         simulation.raise_if_diverged()
+
+
+def test_a_step_that_does_not_divide_a_tick_is_refused():
+    with pytest.raises(ValueError, match=r"a physics step of 0.003 s: a tick of 0.02 s must have a whole number"):
+        Simulation.from_scene("obstacle_avoidance.xml", timestep=0.003)
