@@ -22,6 +22,8 @@ RELEASE: Final = 0.1
 """Seconds without contact after which the next contact counts as another touch."""
 TOUCH: Final = "touch_"
 """Prefix of the sensors that report the strongest contact of arm or tool with something untouchable."""
+FIRST_LENGTH: Final = 1024
+"""Ticks for which a monitor has room at first; an episode of 18 s has 900."""
 DEEPEST_OVERLAP: Final = 0.01
 """Overlap of two bodies in [m] beyond which one has got into the other and its numbers mean nothing.
 
@@ -49,11 +51,15 @@ class ContactMonitor:
         self._touches = {name: simulation.sensor_history(name) for name in touch_names}
         self._seconds_per_step = float(simulation.model.opt.timestep)
         self._start = simulation.time
-        self._ticks: list[FloatArray] = []
+        self._log = np.empty((FIRST_LENGTH, self._history.size))
+        self._n_ticks = 0
 
     def observe(self) -> None:
         """Take in the physics steps of one tick, at its end."""
-        self._ticks.append(self._history.copy())
+        if self._n_ticks == len(self._log):
+            self._log = np.concatenate([self._log, np.empty_like(self._log)])
+        self._log[self._n_ticks] = self._history
+        self._n_ticks += 1
 
     @property
     def load(self) -> float:
@@ -70,7 +76,7 @@ class ContactMonitor:
         SimulationError
             If two bodies overlapped by more than `DEEPEST_OVERLAP`.
         """
-        if not self._ticks:
+        if not self._n_ticks:
             return
         depths = self._readings(self._deepest)[:, 0]
         deepest = int(depths.argmin())
@@ -80,7 +86,7 @@ class ContactMonitor:
 
     def touch_record(self, *, held: float = 0.0) -> ContactRecord:
         """Return the unwanted contacts so far, a present one prolonged by a time in [s]."""
-        if not (self._touches and self._ticks):
+        if not (self._touches and self._n_ticks):
             return ContactRecord()
         readings = np.stack([self._readings(sensor) for sensor in self._touches.values()])  # (n_sensors, n_steps, 4)
         forces, distances = readings[:, :, 0], readings[:, :, 3]
@@ -99,13 +105,13 @@ class ContactMonitor:
     def overlap_with(self, geom: str) -> float:
         """Return the largest overlap so far of arm or tool with a geom that has a touch sensor, in [m], else zero."""
         sensor = self._touches.get(TOUCH + geom)
-        if sensor is None or not self._ticks:
+        if sensor is None or not self._n_ticks:
             return 0.0
         return max(0.0, -float(self._readings(sensor)[:, 3].min()))
 
     def tool_record(self, *, held: float = 0.0) -> ForceRecord:
         """Return the forces on the tool so far, the present one prolonged by a time in [s]."""
-        if not self._ticks:
+        if not self._n_ticks:
             return ForceRecord()
         magnitudes = np.linalg.norm(self._readings(self._tool_force), axis=1)  # (n_steps,)
         last = float(magnitudes[-1])
@@ -118,12 +124,11 @@ class ContactMonitor:
     def _readings(self, sensor: FloatArray) -> FloatArray:
         """Return the readings of a sensor at all steps so far, shape (n_steps, size)."""
         start = (sensor.ctypes.data - self._history.ctypes.data) // self._history.itemsize
-        readings: FloatArray = np.concatenate([tick[start : start + sensor.size] for tick in self._ticks])
-        return readings.reshape(-1, sensor.shape[1])
+        return self._log[: self._n_ticks, start : start + sensor.size].reshape(-1, sensor.shape[1])
 
     def _step_times(self) -> FloatArray:
         """Return the time of every step in [s], shape (n_steps,)."""
-        n_steps = len(self._deepest) * len(self._ticks)
+        n_steps = len(self._deepest) * self._n_ticks
         times: FloatArray = self._start + np.arange(1.0, n_steps + 1.0) * self._seconds_per_step
         return times
 

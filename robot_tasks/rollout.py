@@ -90,16 +90,19 @@ class _Run:
         pose = simulation.pose_of(TIP)
         self.is_stopped = False
         self._simulation = simulation
+        self._model, self._data = simulation.model, simulation.data
         self._tip = simulation.site_position(TIP)
         self._tree = task.build_tree(parameters)
         self._context = SkillContext(tip=pose.position, world=simulation, goal=pose)
         self._generator = MotionGenerator(pose)
         self._controller = ImpedanceController(simulation, force_compensation=task.gap.force_compensation)
         self._recorder = Recorder(task, simulation, variation.shifts)
+        self._contacts = self._recorder.contacts
         self._skill_decides = task.final_condition is None
         self._force_limit = task.gap.force_limit
         self._has_operator = isfinite(task.gap.force_limit)
-        self._sensed_tips = deque([pose.position], maxlen=1 + task.gap.ticks_of_sensing_delay)
+        self._late_tips = deque([pose.position], maxlen=1 + task.gap.ticks_of_sensing_delay)
+        self._sees_late = task.gap.ticks_of_sensing_delay > 0
         self._reference = pose
         self._is_tree_done = False
         self._time = 0.0
@@ -109,10 +112,12 @@ class _Run:
     def tick(self, time: float) -> None:
         """Decide, command, and run physics for one tick that starts at a time in [s]."""
         self._time = time
-        x, y, z = self._tip.tolist()
         context, controller = self._context, self._controller
-        self._sensed_tips.append((x, y, z))
-        context.tip = self._sensed_tips[0]
+        x, y, z = self._tip.tolist()
+        context.tip = x, y, z
+        if self._sees_late:
+            self._late_tips.append(context.tip)
+            context.tip = self._late_tips[0]
         if not self._is_tree_done:
             self._decide(time)
         controller.aim_stiffness(context.stiffness)
@@ -121,10 +126,9 @@ class _Run:
         self._reference = self._generator.reference(time)
         controller.update(self._reference, TICK)
         self._advance()
-        contacts = self._recorder.contacts
-        contacts.observe()
+        self._contacts.observe()
         if self._has_operator:
-            self.is_stopped = contacts.load > self._force_limit
+            self.is_stopped = self._contacts.load > self._force_limit
 
     def sample(self) -> None:
         """Take a sample, and note whether anything moves."""
@@ -163,7 +167,7 @@ class _Run:
 
     def _advance(self) -> None:
         """Run physics for one tick."""
-        model, data = self._simulation.model, self._simulation.data
+        model, data = self._model, self._data
         mujoco.mj_step2(model, data)
         mujoco.mj_step(model, data, self._steps_per_tick - 1)
         mujoco.mj_step1(model, data)
