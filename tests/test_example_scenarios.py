@@ -9,7 +9,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from hypermap_lite import optimize
 from hypermap_lite.cli import main
+from hypermap_lite.errors import NoValidEvaluationError
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.lint import lint
 
@@ -81,3 +83,18 @@ def test_a_robot_run_has_the_same_rows_with_any_number_of_workers(tmp_path: Path
         table = pd.read_csv(folder / "evaluations.csv")
         tables.append(table.sort_values(["trial", "replicate"], ignore_index=True).drop(columns="seconds"))
     pd.testing.assert_frame_equal(*tables, check_exact=True)
+
+
+def test_a_rollout_whose_physics_means_nothing_is_a_failed_evaluation_without_a_score(tmp_path, monkeypatch) -> None:
+    pytest.importorskip("mujoco")
+    monkeypatch.setattr("robot_tasks.contacts.DEEPEST_OVERLAP", 1e-9)  # any contact at all is too much
+    import robot_tasks
+
+    file = EXAMPLES / "robot" / "peg_insertion" / "no_prior.json"
+    overrides = [*TINY, "evaluator.replicates=1", "evaluator.max_consecutive_failures=9"]
+    with pytest.raises(NoValidEvaluationError, match="none of the 5 evaluations gave a usable result"):
+        optimize(file, robot_tasks.peg_insertion, overrides=overrides, output_directory=tmp_path / "out")
+    history = pd.read_csv(tmp_path / "out" / "history.csv")
+    assert history["state"].tolist() == ["failed"] * 5
+    assert history[["insertion_reward", "force"]].isna().all(axis=None)
+    assert history["error"].str.contains("two bodies overlap by").all()

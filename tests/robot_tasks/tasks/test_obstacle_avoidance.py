@@ -107,3 +107,18 @@ def test_the_published_code_differs_in_what_the_charge_knows_of_the_engine_alone
     blind = replace(engine, reward=replace(engine.reward, follows=None))
     assert engine.reward.follows == "engine"
     assert replace(TASK, objectives=TASK.objectives | {"safety": (table, blind)}) == OBSTACLE_AVOIDANCE_PUBLISHED
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_the_means_of_the_misleading_prior_do_not_reach_the_goal_and_touch_the_engine(simulation, start):
+    misleading = {
+        "mp1_position_y": 0.0,
+        "mp1_position_z": 0.6,
+        "mp2_position_y": 0.0,
+        "mp2_position_z": 0.6,
+        "mp2_threshold": 0.5,
+        "mp3_threshold": 1.2,
+    }
+    episode = run(simulation, misleading, start)
+    assert not episode.is_success
+    assert episode.contact.touches >= 1
