@@ -26,7 +26,7 @@ LEAST_DAMPING: Final = 20.0
 """Damping in [Ns/m] of an axis whose stiffness is zero or small, for which 2 sqrt(K) would be none.
 
 An axis under pure force control would otherwise be braked by the joints alone: it would hit the work piece at 0.3 m/s
-under 3 N and at 0.7 m/s under 20 N. With it a force F moves the free arm at F / 20 m/s at most.
+under 3 N and at 0.7 m/s under 20 N. With it a force F lets the free arm settle at F / 20 m/s.
 """
 STIFFNESS_RATE: Final = 500.0
 """Largest change of stiffness in [N/m] and [Nm/rad] per second."""
