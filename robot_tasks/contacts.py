@@ -88,11 +88,11 @@ class ContactMonitor:
         """Return the unwanted contacts so far, a present one prolonged by a time in [s]."""
         if not (self._touches and self._n_ticks):
             return ContactRecord()
+        if not any(self._overlap(sensor) for sensor in self._touches.values()):
+            return ContactRecord()
         readings = np.stack([self._readings(sensor) for sensor in self._touches.values()])  # (n_sensors, n_steps, 4)
         forces, distances = readings[:, :, 0], readings[:, :, 3]
         is_touching: NDArray[np.bool_] = np.any(distances < 0.0, axis=0)
-        if not is_touching.any():
-            return ContactRecord()
         times = self._step_times()[is_touching]
         seconds = len(times) * self._seconds_per_step + (held if is_touching[-1] else 0.0)
         return ContactRecord(
@@ -105,15 +105,16 @@ class ContactMonitor:
     def overlap_with(self, geom: str) -> float:
         """Return the largest overlap so far of arm or tool with a geom that has a touch sensor, in [m], else zero."""
         sensor = self._touches.get(TOUCH + geom)
-        if sensor is None or not self._n_ticks:
-            return 0.0
-        return max(0.0, -float(self._readings(sensor)[:, 3].min()))
+        return 0.0 if sensor is None or not self._n_ticks else self._overlap(sensor)
 
     def tool_record(self, *, held: float = 0.0) -> ForceRecord:
         """Return the forces on the tool so far, the present one prolonged by a time in [s]."""
         if not self._n_ticks:
             return ForceRecord()
-        magnitudes = np.linalg.norm(self._readings(self._tool_force), axis=1)  # (n_steps,)
+        forces = self._readings(self._tool_force)  # (n_steps, 3)
+        if not forces.any():
+            return ForceRecord()
+        magnitudes = np.linalg.norm(forces, axis=1)
         last = float(magnitudes[-1])
         return ForceRecord(
             peak=float(magnitudes.max()),
@@ -121,9 +122,18 @@ class ContactMonitor:
             seconds=int(np.count_nonzero(magnitudes)) * self._seconds_per_step + (held if last else 0.0),
         )
 
+    def _overlap(self, touch: FloatArray) -> float:
+        """Return the largest overlap so far in the readings of a touch sensor, in [m], else zero."""
+        start = self._column(touch) + 3
+        return max(0.0, -float(self._log[: self._n_ticks, start : start + touch.size - 3 : touch.shape[1]].min()))
+
+    def _column(self, sensor: FloatArray) -> int:
+        """Return where the readings of a sensor begin in a row of the log."""
+        return int(sensor.ctypes.data - self._history.ctypes.data) // self._history.itemsize
+
     def _readings(self, sensor: FloatArray) -> FloatArray:
         """Return the readings of a sensor at all steps so far, shape (n_steps, size)."""
-        start = (sensor.ctypes.data - self._history.ctypes.data) // self._history.itemsize
+        start = self._column(sensor)
         return self._log[: self._n_ticks, start : start + sensor.size].reshape(-1, sensor.shape[1])
 
     def _step_times(self) -> FloatArray:

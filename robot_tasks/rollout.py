@@ -13,7 +13,6 @@ from math import isfinite
 from typing import Final
 
 import mujoco
-import numpy as np
 
 from robot_tasks.control import ImpedanceController
 from robot_tasks.episode import Episode
@@ -112,7 +111,7 @@ class _Run:
     def tick(self, time: float) -> None:
         """Decide, command, and run physics for one tick that starts at a time in [s]."""
         self._time = time
-        context, controller = self._context, self._controller
+        context = self._context
         x, y, z = self._tip.tolist()
         context.tip = x, y, z
         if self._sees_late:
@@ -120,11 +119,8 @@ class _Run:
             context.tip = self._late_tips[0]
         if not self._is_tree_done:
             self._decide(time)
-        controller.aim_stiffness(context.stiffness)
-        controller.aim_force(context.force)
-        self._generator.set_overlay(context.overlay, time)
         self._reference = self._generator.reference(time)
-        controller.update(self._reference, TICK)
+        self._controller.update(self._reference, TICK)
         self._advance()
         self._contacts.observe()
         if self._has_operator:
@@ -136,7 +132,7 @@ class _Run:
         is_still = (
             self._controller.is_settled
             and self._generator.is_finished(self._time)
-            and float(np.abs(self._simulation.data.qvel).max()) < STILL_SPEED
+            and max(map(abs, self._data.qvel.tolist())) < STILL_SPEED
         )
         self._n_still = self._n_still + 1 if is_still else 0
 
@@ -152,8 +148,8 @@ class _Run:
         return self._recorder.episode(is_stopped=self.is_stopped)
 
     def _decide(self, time: float) -> None:
-        """Tick the tree and start a trajectory if it changed its goal."""
-        context, generator = self._context, self._generator
+        """Tick the tree, pass its demands on, and start a trajectory if it changed its goal."""
+        context, generator, controller = self._context, self._generator, self._controller
         context.forget_demands()
         status = self._tree.tick(context)
         if status is not Status.RUNNING:
@@ -164,6 +160,9 @@ class _Run:
         if context.goal is not generator.goal and context.goal != generator.goal:
             measured = Pose(context.tip, self._simulation.pose_of(TIP).quaternion)
             generator.move_to(context.goal, measured=measured, time=time)
+        controller.aim_stiffness(context.stiffness)
+        controller.aim_force(context.force)
+        generator.set_overlay(context.overlay, time)
 
     def _advance(self) -> None:
         """Run physics for one tick."""

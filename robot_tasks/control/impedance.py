@@ -65,13 +65,14 @@ class ImpedanceController:
 
     def __init__(self, simulation: Simulation, *, force_compensation: float = 0.0) -> None:
         self._model = simulation.model
-        self._ctrl = simulation.data.ctrl
+        # Numbers are read and written one by one, which a memory view does twice as fast as an array.
+        self._ctrl = memoryview(simulation.data.ctrl).cast("B").cast("d")
+        self._applied = memoryview(simulation.data.qfrc_applied).cast("B").cast("d")
         self._qpos = simulation.data.qpos[:N_JOINTS]
         self._qvel = simulation.data.qvel[:N_JOINTS]
-        self._applied = simulation.data.qfrc_applied[:N_JOINTS]
+        self._tip = simulation.site_position(TIP)
         self._axis_ids = [simulation.id_of("actuator", name) for name in _AXES]
         self._rotation_id = simulation.id_of("actuator", _ROTATION)
-        self._tip = simulation.site_position(TIP)
         self._position: Vector | None = None
         self._quaternion: Quaternion | None = None
         self._stiffness = Ramp(STIFFNESS, rate=STIFFNESS_RATE)
@@ -113,14 +114,17 @@ class ImpedanceController:
         if not self._force.is_settled:
             self._force.advance(seconds)
             x, y, z = self._force.value
-            self._ctrl[1:6:2] = x, y, z + self._force_compensation if z else z
-        self._applied[:] = posture_torque(self._qpos.tolist(), self._qvel.tolist())
+            self._ctrl[1], self._ctrl[3], self._ctrl[5] = x, y, z + self._force_compensation if z else z
+        torque = self._applied
+        torque[0], torque[1], torque[2], torque[3], torque[4], torque[5], torque[6] = posture_torque(
+            self._qpos.tolist(), self._qvel.tolist()
+        )
 
     def _write_reference(self, reference: Pose) -> None:
         ctrl = self._ctrl
         position = within_reach(reference.position, self._tip.tolist(), self._stiffness.value)
         if position != self._position:
-            self._position = ctrl[0], ctrl[2], ctrl[4] = position  # one by one: faster than a slice at this length
+            self._position = ctrl[0], ctrl[2], ctrl[4] = position
         if reference.quaternion is not self._quaternion:
             self._quaternion = ctrl[6], ctrl[7], ctrl[8], ctrl[9] = reference.quaternion
 

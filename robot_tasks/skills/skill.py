@@ -67,12 +67,13 @@ class Skill(Behaviour):
         The condition that made it fail, if one did.
     """
 
-    __slots__ = ("_body", "_is_fresh", "description", "violated")
+    __slots__ = ("_body", "_holdconditions", "_is_fresh", "description", "violated")
 
     def __init__(self, description: SkillDescription, body: Behaviour) -> None:
         super().__init__()
         self.description = description
         self.violated: Relation | None = None
+        self._holdconditions = description.holdconditions
         self._body = body
         self._is_fresh = True
 
@@ -95,7 +96,7 @@ class Skill(Behaviour):
             self._is_fresh = False
             if self._is_violated(self.description.preconditions, context):
                 return FAILURE
-        if self._is_violated(self.description.holdconditions, context):
+        if self._holdconditions and self._is_violated(self._holdconditions, context):
             return FAILURE
         status = self._body.tick(context)
         if status is SUCCESS and self._is_violated(self.description.postconditions, context):
@@ -106,6 +107,5 @@ class Skill(Behaviour):
         self._body.halt(context)
 
     def _is_violated(self, relations: tuple[Relation, ...], context: SkillContext) -> bool:
-        if relations:
-            self.violated = first_violated(relations, context.world)
+        self.violated = first_violated(relations, context.world)
         return self.violated is not None
