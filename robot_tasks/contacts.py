@@ -171,6 +171,8 @@ class Clearance:
 
     def observe(self) -> None:
         """Take in the present state."""
+        model, data, obstacle, smallest = self._model, self._data, self._obstacle, self.smallest
         for geom in self._geoms:
-            distance = mujoco.mj_geomDistance(self._model, self._data, geom, self._obstacle, self.smallest, None)
-            self.smallest = min(self.smallest, distance)
+            # The search is cut short at the distance given, and then returns it.
+            smallest = mujoco.mj_geomDistance(model, data, geom, obstacle, smallest, None)
+        self.smallest = smallest
