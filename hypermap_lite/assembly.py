@@ -105,7 +105,7 @@ def build_prior(scenario: Scenario, space: SearchSpace) -> ProductPrior:
     factors: list[tuple[tuple[int, ...], JointDensity]] = []
     owners: dict[str, str] = {}
     for j, spec in enumerate(scenario.parameters):
-        if spec.prior is not None and spec.prior.type != "uniform":
+        if spec.prior is not None and spec.has_belief:
             owners[spec.name] = spec.prior.path
             factors.append(((j,), AsJoint(_marginal_density(spec, spec.prior, space.parameters[j]))))
     factors.extend(_joint_factor(joint, space, owners) for joint in scenario.joint_priors)
@@ -182,8 +182,7 @@ def build_design(scenario: Scenario) -> InitialDesign:
     """Make the initial design; ``auto`` draws from the priors where there are any, else from a Sobol sequence."""
     name = scenario.design.type
     if name == "auto":
-        has_prior = scenario.joint_priors or any(p.prior is not None for p in scenario.parameters)
-        name = "prior_sampling" if has_prior else "sobol"
+        name = "prior_sampling" if scenario.has_priors else "sobol"
     return build_member(DESIGNS, ComponentSpec(type=name, path="$.design_of_experiment"), "design")
 
 

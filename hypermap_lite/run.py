@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.objectives import Objective, reference_point_of, values_of
 from hypermap_lite.pareto import hypervolume, infer_reference_point
 from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.lint import single_points
 from hypermap_lite.scenario.model import EvaluatorSpec, Scenario
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
     from hypermap_lite.evaluation.outcome import Evaluation
     from hypermap_lite.optimizers.base import Optimizer
     from hypermap_lite.typing import Configuration, FloatArray
+
+logger = logging.getLogger(__name__)
 
 Point = tuple["Configuration", Mapping[str, float]]
 """A configuration and its objective values, as the user directed them."""
@@ -71,6 +75,7 @@ def optimize(
     workers: int | None = None,
     output_directory: str | Path | None = None,
     overrides: Sequence[str] = (),
+    prior_from: str | Path | None = None,
     retry_failed: bool = False,
 ) -> Result:
     """Run a scenario, or go on with it where it stopped.
@@ -89,6 +94,8 @@ def optimize(
         Run folder, instead of the scenario's.
     overrides
         Other changes, as in ``budget.evaluations=30``.
+    prior_from
+        Run folder or CSV file whose non-dominated configurations replace all priors of the scenario.
     retry_failed
         Whether the failures at the end of an earlier session are evaluated again, with the same seeds, instead of
         counting towards the budget.
@@ -119,7 +126,8 @@ def optimize(
         changes.append(f"evaluator.workers={workers}")
     if output_directory is not None:
         changes.append(f"output.directory={json.dumps(str(output_directory))}")
-    return run_scenario(load_scenario(scenario, overrides=changes), function, retry_failed=retry_failed)
+    loaded = load_scenario(scenario, overrides=changes, prior_from=prior_from)
+    return run_scenario(loaded, function, retry_failed=retry_failed)
 
 
 def run_scenario(
@@ -156,6 +164,8 @@ def run_scenario(
     with folder, closing(executor):  # workers end before the lock is released
         if retry_failed:
             folder.set_failures_aside()
+        for path, text in single_points(scenario):
+            logger.warning("%s: %s", path, text)
         runner = Runner(
             optimizer=optimizer,
             evaluator=evaluator,

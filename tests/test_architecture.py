@@ -33,7 +33,7 @@ LAYERS = (
 FAMILIES = {"priors", "design", "surrogates", "scalarization", "acquisition", "maximizers", "optimizers"}
 
 NARROWER = {
-    "scenario": {"errors", "typing", "objectives", "space", "history", "evaluation.placeholders", "scenario"},
+    "scenario": {"errors", "typing", "objectives", "pareto", "space", "history", "evaluation.placeholders", "scenario"},
     "plotting": {"errors", "typing", "objectives", "pareto", "history", "plotting"},
 }
 """Parts that may know less than their layer allows: scenarios only name components, pictures only read files."""

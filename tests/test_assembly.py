@@ -111,3 +111,25 @@ def test_a_command_of_installed_programs_runs_beside_the_file_that_names_it(tmp_
 
 def test_a_given_function_takes_the_place_of_the_evaluator() -> None:
     assert assembly.build_evaluator(load(), lambda c: {"near": 0, "far": 0}) is not None
+
+
+def test_a_density_of_points_finds_its_axes() -> None:
+    priors = [{"type": "kde", "points": {"n": [3, 4], "c": ["b", "b"], "r": [10, 12]}}]
+    scenario = load(priors=priors)
+    space = assembly.build_space(scenario)
+    prior = assembly.build_prior(scenario, space)
+    likely, unlikely = space.encode([{"r": r, "o": 8, "c": c, "n": n} for r, c, n in ((11, "b", 3), (90, "a", 9))])
+    assert prior.log_density(likely[None])[0] > prior.log_density(unlikely[None])[0] + 3
+    assembly.validate(scenario)
+
+
+def test_a_uniform_prior_counts_only_with_a_range() -> None:
+    def prior_of(entry: object):
+        scenario = load(input_parameters={"r": {**PARAMETERS["r"], "prior": entry}})
+        return assembly.build_prior(scenario, assembly.build_space(scenario)), assembly.build_design(scenario)
+
+    without, design = prior_of("uniform")
+    assert (without.is_uniform, type(design).__name__) == (True, "Sobol")
+    ranged, design = prior_of({"type": "uniform", "low": 10})
+    assert np.exp(ranged.log_density(np.array([[0.4], [0.6]]))) == pytest.approx([0, 2])
+    assert type(design).__name__ == "PriorSampling"

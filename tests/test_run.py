@@ -14,6 +14,7 @@ from hypermap_lite.errors import RunFolderError, ScenarioError, UsageError
 from hypermap_lite.evaluation.runner import StopReason
 from hypermap_lite.history.lock import FolderLock
 from hypermap_lite.run import name_of
+from hypermap_lite.scenario import load_scenario
 from tests.evaluation.black_boxes import sphere
 
 SCENARIO = {
@@ -173,3 +174,28 @@ def test_script_needs_no_main_guard(tmp_path):
     )
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True, cwd=Path.cwd())
     assert done.stdout == "6\n"
+
+
+def test_a_prior_of_a_single_point_is_said_in_the_run_log(tmp_path):
+    priors = [{"type": "kde", "points": {"x": [0.5]}}]
+    optimize(SCENARIO | {"priors": priors}, two, output_directory=tmp_path)
+    assert "WARNING $.priors[0]: it rests on a single point" in (tmp_path / "run.log").read_text()
+
+
+def test_the_front_of_another_run_can_be_the_prior(tmp_path):
+    optimize(SCENARIO, two, output_directory=tmp_path / "first")
+    result = optimize(SCENARIO, two, output_directory=tmp_path / "second", prior_from=tmp_path / "first")
+    recorded = load_scenario(result.run_folder / "scenario.json")
+    assert recorded.joint_priors[0].options["file"] == str(tmp_path / "first")
+    assert recorded.design.type == "prior_sampling"
+
+
+def test_a_range_as_prior_without_floor_keeps_all_trials_in_it(tmp_path):
+    parameters = {
+        "x": {"parameter_type": "real", "values": [-2, 2], "prior": {"type": "uniform", "low": 0.5, "high": 1}},
+        "n": {"parameter_type": "integer", "values": [0, 9], "prior": {"type": "uniform", "low": 3, "high": 5}},
+    }
+    acquisition = {"prior_weighting": {"method": "pibo", "floor": 0}}
+    scenario = SCENARIO | {"input_parameters": parameters, "optimizer": "bayesian", "acquisition": acquisition}
+    result = optimize(scenario, two, output_directory=tmp_path)
+    assert all(0.5 <= e.configuration["x"] <= 1 and 3 <= e.configuration["n"] <= 5 for e in result.evaluations)

@@ -56,7 +56,7 @@ AROUND = {"acquisition": ("scalarization", "weights", "prior_weighting"), "evalu
 """Keys of a section that are not options of the member, besides its kind."""
 
 FROM_ELSEWHERE = {"objectives", "search_path", "working_directory", "parameters"}
-"""Fields of members that the rest of the scenario fills in."""
+"""Fields of evaluators that the rest of the scenario fills in."""
 
 MEMBERS = [
     pytest.param(section, kind, member, id=f"{section}-{kind}")
@@ -80,7 +80,7 @@ def fields_of(member: type) -> dict[str, Any]:
     return {
         field.name: None if field.default is dataclasses.MISSING else field.default
         for field in dataclasses.fields(member)
-        if field.init and field.name not in FROM_ELSEWHERE
+        if field.init and not (member in EVALUATORS.values() and field.name in FROM_ELSEWHERE)
     }
 
 

@@ -7,7 +7,7 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from hypermap_lite.cli.arguments import add_scenario
+from hypermap_lite.cli.arguments import add_scenario, load
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, _SubParsersAction
@@ -37,11 +37,10 @@ def execute(args: Namespace) -> int:
     """
     from hypermap_lite.assembly import validate
     from hypermap_lite.errors import ScenarioError
-    from hypermap_lite.scenario import load_scenario
     from hypermap_lite.scenario.lint import lint
     from hypermap_lite.scenario.summary import summarize
 
-    scenario = load_scenario(args.scenario, overrides=args.overrides)
+    scenario = load(args, args.overrides)
     try:
         validate(scenario)
     except ScenarioError as error:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from hypermap_lite.cli.arguments import add_scenario
+from hypermap_lite.cli.arguments import add_scenario, load
 from hypermap_lite.errors import HypermapLiteError
 
 if TYPE_CHECKING:
@@ -69,9 +69,8 @@ def execute(args: Namespace) -> int:
     from hypermap_lite.cli.signals import StoppedAtOnce, StopSignals
     from hypermap_lite.evaluation.runner import StopReason
     from hypermap_lite.run import run_scenario
-    from hypermap_lite.scenario import load_scenario
 
-    scenario = load_scenario(args.scenario, overrides=overrides_of(args))
+    scenario = load(args, overrides_of(args))
     try:
         with StopSignals() as signals, progress(is_quiet=args.quiet, is_verbose=args.verbose) as observer:
             result = run_scenario(
@@ -106,7 +105,12 @@ def overrides_of(args: Namespace) -> list[str]:
 def command_to_go_on(args: Namespace) -> str:
     """Return the command that goes on with this run."""
     words = ["python", "-m", "hypermap_lite", "run", args.scenario]
-    options = {"--seed": args.seed, "--workers": args.workers, "--output-dir": args.output_dir}
+    options = {
+        "--seed": args.seed,
+        "--workers": args.workers,
+        "--output-dir": args.output_dir,
+        "--prior-from": args.prior_from,
+    }
     for option, value in options.items():
         words += [] if value is None else [option, str(value)]
     for change in args.overrides:

@@ -28,10 +28,12 @@ MAY_DIFFER: Final = (
     "$.description",
     "$.input_parameters.*.description",
     "$.objectives[*].description",
+    "$.priors[*].file",
 )
 """Parts of a scenario that may change between a run and its continuation: they do not change what a row means.
 
 A star stands for one key or index. The name matters only where it names the folder, and then it leads to another one.
+The file of a prior has been read: its points count.
 """
 
 _FREE: Final = re.compile("|".join(re.escape(place).replace(r"\*", r"[^.\[\]]+") for place in MAY_DIFFER))
@@ -42,6 +44,8 @@ LIBRARIES: Final = ("numpy", "scipy", "scikit-learn", "moocore")
 MISSING: Final = "nothing"
 OWN_EVALUATOR: Final = "the scenario's own evaluator"
 SHOWN_DIFFERENCES: Final = 8
+SHOWN_CHARACTERS: Final = 60
+"""Of a value; of a longer one, such as the points of a prior, only the surroundings of the difference."""
 
 
 def check_scenario(path: Path, canonical: Mapping[str, Any], function: str | None = None) -> None:
@@ -60,7 +64,11 @@ def check_scenario(path: Path, canonical: Mapping[str, Any], function: str | Non
     versions = recorded.pop("versions", None)
     differences = list(differing(recorded, _plain(canonical)))
     if differences:
-        shown = [f"  {place}: {old} there, {new} now" for place, old, new in differences[:SHOWN_DIFFERENCES]]
+        shown = [
+            f"  {place}: {old} there, {new} now"
+            for place, *values in differences[:SHOWN_DIFFERENCES]
+            for old, new in [_around_difference(*values)]
+        ]
         if len(differences) > len(shown):
             shown.append(f"  ... and {len(differences) - len(shown)} more")
         raise RunFolderError(
@@ -68,6 +76,19 @@ def check_scenario(path: Path, canonical: Mapping[str, Any], function: str | Non
             "  hint: Choose another folder with --output-dir, or --fresh to start anew (the old folder is kept aside)."
         )
     _compare_versions(versions if isinstance(versions, dict) else {}, versions_in_use(function))
+
+
+def _around_difference(old: str, new: str) -> tuple[str, str]:
+    """Cut two long texts to what surrounds the first character in which they differ."""
+    common = next((i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
+    start = max(common - SHOWN_CHARACTERS // 2, 0)
+    old, new = (
+        text
+        if len(text) <= SHOWN_CHARACTERS
+        else "... " * (start > 0) + text[start : start + SHOWN_CHARACTERS] + " ..."
+        for text in (old, new)
+    )
+    return old, new
 
 
 def _compare_versions(before: Mapping[str, Any], now: Mapping[str, str]) -> None:
@@ -103,8 +124,10 @@ def differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[tuple[
     """Yield place, old and new value (as JSON) of each difference between two scenarios that matters."""
     before, after = dict(_leaves("$", old)), dict(_leaves("$", new))
     for place in [*before, *(p for p in after if p not in before)]:
-        if not _FREE.fullmatch(place) and before.get(place, MISSING) != after.get(place, MISSING):
-            yield place, before.get(place, MISSING), after.get(place, MISSING)
+        values = before.get(place, MISSING), after.get(place, MISSING)
+        # null is the default everywhere, so an option that an older version did not have yet is no difference
+        if not _FREE.fullmatch(place) and values[0] != values[1] and set(values) != {MISSING, "null"}:
+            yield place, *values
     names = [list(scenario.get("input_parameters", ())) for scenario in (old, new)]
     if names[0] != names[1] and set(names[0]) == set(names[1]):
         first, second = (json.dumps(order, ensure_ascii=False) for order in names)

@@ -5,6 +5,7 @@ from typing import Final
 
 from hypermap_lite.priors.base import Density, JointDensity, JointPrior, MarginalPrior
 from hypermap_lite.priors.beta import BetaPrior
+from hypermap_lite.priors.kernel_density import KernelDensity, KernelDensityPrior
 from hypermap_lite.priors.mixture import JointMixturePrior, MixturePrior
 from hypermap_lite.priors.product import AsJoint, ProductPrior
 from hypermap_lite.priors.truncated_gaussian import GaussianPrior
@@ -20,7 +21,10 @@ PRIORS: Final[Mapping[str, type[MarginalPrior]]] = {
 }
 """JSON name of each prior over one parameter."""
 
-JOINT_PRIORS: Final[Mapping[str, type[JointPrior]]] = {"mixture": JointMixturePrior}
+JOINT_PRIORS: Final[Mapping[str, type[JointPrior]]] = {
+    "mixture": JointMixturePrior,
+    "kde": KernelDensityPrior,
+}
 """JSON name of each prior over several parameters."""
 
 __all__ = [
@@ -33,6 +37,8 @@ __all__ = [
     "JointDensity",
     "JointMixturePrior",
     "JointPrior",
+    "KernelDensity",
+    "KernelDensityPrior",
     "MarginalPrior",
     "MixturePrior",
     "ProductPrior",

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from hypermap_lite.errors import ScenarioError, nearest
-from hypermap_lite.typing import FloatArray, IntArray, Rng
+from hypermap_lite.typing import FloatArray, IntArray, Rng, Value
 
 SMALLEST_MASS = 1e-12
 """Masses of bins below this are taken from the density instead of from a difference of probabilities."""
@@ -35,6 +35,22 @@ class Axis(Protocol):
     @property
     def n_levels(self) -> int | None:
         """Number of levels; None if continuous."""
+        ...
+
+    def contains(self, value: object) -> bool:
+        """Tell whether a native value is legal."""
+        ...
+
+    def allowed(self) -> str:
+        """Say in words which values are legal, for messages."""
+        ...
+
+    def encode(self, values: Sequence[Value]) -> FloatArray:
+        """Return the codes of n legal native values, shape (n,)."""
+        ...
+
+    def decode(self, codes: FloatArray) -> list[Value]:
+        """Return the native values of n codes in [0, 1]."""
         ...
 
     def locate(self, value: float) -> float:
@@ -105,6 +121,10 @@ class JointDensity(Protocol):
 
     def mode(self) -> FloatArray:
         """Return a point of (nearly) highest density, shape (k,)."""
+        ...
+
+    def marginal(self, axes: Sequence[int]) -> JointDensity:
+        """Return the density on some of the k axes, each named once, in the order given; the others integrated out."""
         ...
 
 
@@ -198,6 +218,15 @@ class ManyLevels(Density):
         levels = np.clip(level + np.arange(-1, 2), 0, (self.axis.n_levels or 1) - 1)
         codes = self.axis.codes_of_levels(levels)
         return float(codes[np.argmax(self.log_density(codes))])
+
+
+def is_numeric(axis: Axis) -> bool:
+    """Tell whether distances on an axis mean something: it is that of a real or integer parameter."""
+    try:
+        axis.scale_std(1.0)
+    except ScenarioError:
+        return False
+    return True
 
 
 def on_levels(density: Density, axis: Axis) -> Density:

@@ -118,6 +118,10 @@ class MixtureDensity:
         modes = np.array([[f.mode() for f in component] for component in self.components])
         return np.asarray(modes[np.argmax(self.log_density(modes))])
 
+    def marginal(self, axes: Sequence[int]) -> MixtureDensity:
+        """Return the density on some axes: each component just drops the others."""
+        return MixtureDensity(tuple(tuple(c[j] for j in axes) for c in self.components), self.weights)
+
 
 @dataclass(frozen=True, slots=True)
 class MarginalMixture(Density):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,12 @@ class AsJoint:
     def mode(self) -> FloatArray:
         """Return the point of highest density, shape (1,)."""
         return np.array([self.density.mode()])
+
+    def marginal(self, axes: Sequence[int]) -> AsJoint:
+        """Return itself: there is no other axis."""
+        if list(axes) != [0]:
+            raise ValueError(f"Expected `axes` to be [0]. Got {list(axes)}")
+        return self
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +80,16 @@ class ProductPrior:
         for axes, density in self.factors:
             x[list(axes)] = density.mode()
         return x
+
+    def marginal(self, axes: Sequence[int]) -> ProductPrior:
+        """Return the density on some axes: the product of the factors' own marginals."""
+        place = {axis: i for i, axis in enumerate(axes)}
+        factors = []
+        for own, density in self.factors:
+            kept = [k for k, axis in enumerate(own) if axis in place]
+            if kept:
+                factors.append((tuple(place[own[k]] for k in kept), density.marginal(kept)))
+        return ProductPrior(len(axes), tuple(factors))
 
     def log_peak(self) -> float:
         """Return the log density at the mode: what relative densities are measured against."""

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import log_ndtr, ndtri_exp
 
 from hypermap_lite.errors import ScenarioError, finite_number, positive_number
-from hypermap_lite.priors.base import Axis, Density, on_levels
+from hypermap_lite.priors.base import Axis, Density, is_numeric, on_levels
 from hypermap_lite.typing import FloatArray, Rng
 
 LOG_SQRT_2PI = 0.5 * math.log(2 * math.pi)
@@ -57,17 +57,9 @@ def gaussian_on(axis: Axis, mean: float, std: float) -> TruncatedNormal:
     try:
         location, scale = axis.locate(mean), min(max(axis.scale_std(std), NARROWEST), FLATTEST)
     except ScenarioError as error:
-        hint = error.hint if _is_numeric(axis) else "Give ordinal and categorical parameters 'weights'."
+        hint = error.hint if is_numeric(axis) else "Give ordinal and categorical parameters 'weights'."
         raise ScenarioError("$.mean", error.problem, allowed=error.allowed, hint=hint) from None
     return TruncatedNormal(min(max(location, -FARTHEST * scale), 1 + FARTHEST * scale), scale)
-
-
-def _is_numeric(axis: Axis) -> bool:
-    try:
-        axis.scale_std(1.0)
-    except ScenarioError:
-        return False
-    return True
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,9 @@ EVALUATOR_KEYS = ("replicates", "timeout_seconds", "workers", "max_consecutive_f
 """Keys of the section that are about the calls, not about the evaluator."""
 
 
-def build_scenario(document: Mapping[str, Any], *, directory: Path, layers: tuple[Layer, ...] = ()) -> Scenario:
+def build_scenario(
+    document: Mapping[str, Any], *, directory: Path, layers: tuple[Layer, ...] = (), notes: tuple[str, ...] = ()
+) -> Scenario:
     """Return the scenario of a document that holds every key, as `fill_derived` returns it."""
     return Scenario(
         application_name=document["application_name"],
@@ -44,6 +46,7 @@ def build_scenario(document: Mapping[str, Any], *, directory: Path, layers: tupl
         canonical=document,
         directory=directory,
         layers=layers,
+        notes=notes,
     )
 
 

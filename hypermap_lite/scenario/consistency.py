@@ -9,7 +9,7 @@ from typing import Any, Final
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.evaluation.placeholders import BUILT_IN
 from hypermap_lite.history.rows import RESERVED_COLUMNS
-from hypermap_lite.scenario.defaults import default_samples
+from hypermap_lite.scenario.defaults import default_samples, has_belief
 from hypermap_lite.scenario.messages import enumerate_names
 
 RESERVED_NAMES: Final = RESERVED_COLUMNS | {"feasible"}
@@ -44,12 +44,15 @@ def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str
 
 
 def _check_joint_priors(parameters: Mapping[str, Any], priors: Sequence[Mapping[str, Any]]) -> None:
-    owners = {name: f"$.input_parameters.{name}.prior" for name, p in parameters.items() if p["prior"] is not None}
     for i, prior in enumerate(priors):
-        for path, name in _names_in(f"$.priors[{i}]", prior):
+        if prior["type"] == "kde":
+            _check_density(f"$.priors[{i}]", prior)
+    owners = {name: f"$.input_parameters.{name}.prior" for name, p in parameters.items() if has_belief(p)}
+    for i, prior in enumerate(priors):
+        for path, name in names_in(f"$.priors[{i}]", prior):
             _check_known(path, name, parameters, "parameter")
             kind = parameters[name]["parameter_type"]
-            if kind not in ("real", "integer"):
+            if prior["type"] == "mixture" and kind not in ("real", "integer"):
                 allowed = "real and integer parameters"
                 raise ScenarioError(path, f"'{name}' is {kind}", allowed=allowed, hint="Give it weights of its own.")
             if owners.setdefault(name, f"$.priors[{i}]") != f"$.priors[{i}]":
@@ -57,8 +60,30 @@ def _check_joint_priors(parameters: Mapping[str, Any], priors: Sequence[Mapping[
                 raise ScenarioError(path, problem, allowed="one prior per parameter", hint="Drop one of the two.")
 
 
-def _names_in(path: str, prior: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    for k, component in enumerate(prior["components"]):
+def _check_density(path: str, prior: Mapping[str, Any]) -> None:
+    """Check the options of a kernel density prior against each other."""
+    if prior["file"] is None and prior["points"] is None:
+        raise ScenarioError(
+            path, "it has no file to take points from", allowed="a CSV file or run folder", hint="Add 'file'."
+        )
+    if (prior["rows"] == "best") != (prior["quantile"] is not None):
+        is_missing = prior["quantile"] is None
+        problem = (
+            "'best' needs to know how many" if is_missing else f"a quantile goes with rows best, not {prior['rows']}"
+        )
+        hint = 'Write "quantile": 0.1, say.' if is_missing else 'Write "rows": "best", or drop it.'
+        raise ScenarioError(f"{path}.quantile", problem, allowed="a number > 0 and <= 1, with rows best", hint=hint)
+    names, points = prior["parameters"], prior["points"]
+    if names is not None and points is not None and set(names) != set(points):
+        problem = f"the points are of {enumerate_names(points)}"
+        raise ScenarioError(f"{path}.parameters", problem, allowed="the same, or null", hint="Drop one of the two.")
+
+
+def names_in(path: str, prior: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield each place where a joint prior names a parameter, with the name."""
+    yield from ((f"{path}.parameters[{k}]", name) for k, name in enumerate(prior.get("parameters") or ()))
+    yield from ((f"{path}.points.{name}", name) for name in prior.get("points") or ())
+    for k, component in enumerate(prior.get("components", ())):
         for part in ("mean", "std"):
             yield from ((f"{path}.components[{k}].{part}.{name}", name) for name in component[part])
 

@@ -55,5 +55,15 @@ def default_samples(document: Mapping[str, Any]) -> int:
 
 def has_priors(document: Mapping[str, Any]) -> bool:
     """Tell whether a document says anything about where the optimum lies."""
-    own = [parameter.get("prior") for parameter in document["input_parameters"].values()]
-    return bool(document.get("priors")) or any(prior and prior["type"] != "uniform" for prior in own)
+    return bool(document.get("priors")) or any(map(has_belief, document["input_parameters"].values()))
+
+
+def has_belief(parameter: Mapping[str, Any]) -> bool:
+    """Tell whether a parameter has a prior that says anything; a uniform one does so only with a range."""
+    prior: Mapping[str, Any] | None = parameter.get("prior")
+    return prior is not None and is_belief(prior["type"], prior)
+
+
+def is_belief(kind: str, options: Mapping[str, Any]) -> bool:
+    """Tell whether a prior of this type, with these options, says anything."""
+    return kind != "uniform" or not (options.get("low") is None and options.get("high") is None)

@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from hypermap_lite.scenario.command_lint import lint_command
 from hypermap_lite.scenario.model import ParameterSpec, Scenario
+from hypermap_lite.typing import Value
 
 Part: TypeAlias = tuple[Mapping[str, float], Mapping[str, float], float]
 """A Gaussian's means and standard deviations by parameter, and its weight."""
@@ -26,6 +27,7 @@ def lint(scenario: Scenario) -> list[str]:
         *_linear_decades(scenario),
         *_partial_defaults(scenario),
         *_priors_outside(scenario),
+        *single_points(scenario),
         *_unused_priors(scenario),
         *_reference_points(scenario),
         *_budget(scenario),
@@ -104,12 +106,28 @@ def _gaussians(scenario: Scenario) -> Iterator[tuple[str, list[Part]]]:
             components = prior.options["components"]
             yield prior.path, [({name: c["mean"]}, {name: c["std"]}, c["weight"]) for c in components]
     for joint in scenario.joint_priors:
-        yield joint.path, [(c["mean"], c["std"], c["weight"]) for c in joint.options["components"]]
+        if joint.type == "mixture":
+            yield joint.path, [(c["mean"], c["std"], c["weight"]) for c in joint.options["components"]]
 
 
 def _inside(numeric: Mapping[str, ParameterSpec], parts: list[Part]) -> float:
     masses = [w * math.prod(mass_inside(numeric[n], mean[n], std[n]) for n in mean) for mean, std, w in parts]
     return sum(masses) / sum(weight for _, _, weight in parts)
+
+
+def single_points(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    """Yield path and warning for each density over a single point, whose width is not that of any data."""
+    for prior in scenario.joint_priors:
+        points = prior.options.get("points")
+        if points and len(_distinct(points, prior.options.get("point_weights"))) == 1:
+            text = "it rests on a single point; its width is set to a standard deviation of 10 % of each range"
+            discrete = {p.name for p in scenario.parameters if p.parameter_type in ("categorical", "ordinal")}
+            yield prior.path, f"{text}, and it says nothing about levels." if discrete & set(points) else f"{text}."
+
+
+def _distinct(points: Mapping[str, list[Value]], weights: list[float] | None) -> set[tuple[Value, ...]]:
+    rows = list(zip(*points.values(), strict=False))
+    return {row for row, weight in zip(rows, weights or [1.0] * len(rows), strict=False) if weight}
 
 
 def _percent(share: float) -> str:

@@ -17,12 +17,16 @@ from hypermap_lite.scenario.merging import apply_override, bases_of, merge, merg
 from hypermap_lite.scenario.messages import check_document
 from hypermap_lite.scenario.model import Scenario
 from hypermap_lite.scenario.presets import PRESETS
+from hypermap_lite.scenario.prior_from import replace_priors
+from hypermap_lite.scenario.prior_points import with_points
 from hypermap_lite.scenario.reading import parse_json
 from hypermap_lite.scenario.schemas import root_schema
 from hypermap_lite.scenario.sources import Layer, origin_of
 
 
-def load_scenario(source: str | Path | Mapping[str, Any], *, overrides: Sequence[str] = ()) -> Scenario:
+def load_scenario(
+    source: str | Path | Mapping[str, Any], *, overrides: Sequence[str] = (), prior_from: str | Path | None = None
+) -> Scenario:
     """Read, merge, check and complete a scenario.
 
     Parameters
@@ -31,6 +35,8 @@ def load_scenario(source: str | Path | Mapping[str, Any], *, overrides: Sequence
         Path of a JSON file, or its content as a mapping; then files it extends are relative to the working directory.
     overrides
         Changes on top, as in ``budget.evaluations=30``: a dotted path and a value in JSON, or else a string.
+    prior_from
+        Run folder or CSV file whose good configurations replace all priors of the scenario; before the overrides.
 
     Raises
     ------
@@ -42,14 +48,18 @@ def load_scenario(source: str | Path | Mapping[str, Any], *, overrides: Sequence
     else:
         directory, layers = Path(source).parent, read_layers(Path(source))
     document = merge_layers(layers)
+    notes: list[str] = []
+    if prior_from is not None:
+        document, layer, notes = replace_priors(document, str(prior_from))
+        layers.append(layer)
     for override in overrides:
         document, layer = apply_override(document, override)
         layers.append(layer)
     try:
-        complete = complete_document(document)
+        complete = with_points(complete_document(document), layers, directory)
     except ScenarioError as error:
         raise error.within(origin_of(error.path, layers)) from None
-    return build_scenario(complete, directory=directory, layers=tuple(layers))
+    return build_scenario(complete, directory=directory, layers=tuple(layers), notes=tuple(notes))
 
 
 def complete_document(document: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from hypermap_lite.objectives import Objective
-from hypermap_lite.scenario.sources import Layer, layer_of, origin_of
+from hypermap_lite.scenario.defaults import is_belief
+from hypermap_lite.scenario.sources import Layer, folders_of, origin_of
 from hypermap_lite.typing import Value
 
 
@@ -42,6 +43,11 @@ class ParameterSpec:
     parameter_default: Value | None = None
     prior: ComponentSpec | None = None
     description: str = ""
+
+    @property
+    def has_belief(self) -> bool:
+        """Whether its prior says anything; a uniform one does so only with a range."""
+        return self.prior is not None and is_belief(self.prior.type, self.prior.options)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,10 +139,13 @@ class Scenario:
     layers: tuple[Layer, ...] = field(default=(), compare=False, repr=False)
     """The files and overrides it was put together from, the most basic first."""
 
+    notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    """What loading has changed that the user did not spell out, a sentence each."""
+
     @property
     def has_priors(self) -> bool:
         """Whether the user says anything about where the optimum lies."""
-        return bool(self.joint_priors) or any(p.prior and p.prior.type != "uniform" for p in self.parameters)
+        return bool(self.joint_priors) or any(p.has_belief for p in self.parameters)
 
     def origin_of(self, path: str) -> str:
         """Return the name of the file, or the ``--set``, that wrote the value at a path; empty if there is none."""
@@ -144,9 +153,7 @@ class Scenario:
 
     def folders_of(self, path: str) -> tuple[Path, ...]:
         """Return where files named at a path are looked for: beside the file that says it, then beside this one."""
-        layer = layer_of(path, self.layers)
-        first = self.directory if layer is None or layer.directory is None else layer.directory
-        return tuple(dict.fromkeys((first.resolve(), self.directory.resolve())))
+        return folders_of(path, self.layers, self.directory)
 
     def command_folder(self) -> Path:
         """Return where the evaluator's command runs: the first of its folders that holds a file it names."""

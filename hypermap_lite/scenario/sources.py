@@ -14,7 +14,7 @@ Keys: TypeAlias = tuple[str | int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """One file, or one ``--set``, of those that were merged."""
+    """One file, or one option of the command line, of those that were merged."""
 
     name: str
     """What messages call it; empty for a scenario given as a Python mapping."""
@@ -23,7 +23,7 @@ class Layer:
     """Its content as written."""
 
     directory: Path | None = None
-    """Folder of the file; None for a Python mapping and for ``--set``."""
+    """Folder that paths in it are relative to: that of the file; None for a Python mapping and for ``--set``."""
 
 
 def layer_of(path: str, layers: Sequence[Layer]) -> Layer | None:
@@ -33,13 +33,20 @@ def layer_of(path: str, layers: Sequence[Layer]) -> Layer | None:
         for layer in reversed(layers):
             if _has(layer.document, keys[:depth]):
                 return layer
-    return next((layer for layer in reversed(layers) if not layer.name.startswith("--set")), None)
+    return next((layer for layer in reversed(layers) if not layer.name.startswith("--")), None)
 
 
 def origin_of(path: str, layers: Sequence[Layer]) -> str:
     """Return the name of the layer that wrote the value at a path, or the nearest value above it."""
     layer = layer_of(path, layers)
     return "" if layer is None else layer.name
+
+
+def folders_of(path: str, layers: Sequence[Layer], directory: Path) -> tuple[Path, ...]:
+    """Return where files named at a path are looked for: beside the layer that says it, then in a directory."""
+    layer = layer_of(path, layers)
+    first = directory if layer is None or layer.directory is None else layer.directory
+    return tuple(dict.fromkeys((first.resolve(), directory.resolve())))
 
 
 def keys_of(path: str) -> Keys:

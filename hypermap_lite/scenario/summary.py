@@ -54,11 +54,24 @@ def _prior(prior: ComponentSpec | None) -> str:
 
 
 def _joint_prior(prior: ComponentSpec) -> list[str]:
+    if prior.type == "kde":
+        return _kernel_density(prior.options)
     parts = []
     for c in prior.options["components"]:
         terms = [f"{name} {mean:g} ± {c['std'].get(name, math.nan):g}" for name, mean in c["mean"].items()]
         parts.append(f"  {', '.join(terms)}{_share(c['weight'])}")
     return [f"{prior.type} of", *parts]
+
+
+def _kernel_density(options: Mapping[str, Any]) -> list[str]:
+    points = options.get("points") or {}
+    n = len(next(iter(points.values()), ()))
+    which = {"best": f"best {_value(options['quantile'])} of the rows", "all": "all usable rows"}
+    source = f", {which.get(options['rows'], 'non-dominated rows')} of {options['file']}" if options["file"] else ""
+    factor = None if options["bandwidth_factor"] == 1 else options["bandwidth_factor"]
+    shown = {"weights": options["weights"], "bandwidth_factor": factor, "independent": options["independent"] or None}
+    form = _options(shown)
+    return [f"kde{form} of {n} point{'s' * (n != 1)}{source}", f"  over {', '.join(points)}"]
 
 
 def _share(weight: float) -> str:

@@ -6,7 +6,7 @@ import pytest
 from hypermap_lite.acquisition import PriorWeighted, PriorWeighting
 from hypermap_lite.acquisition.improvement import LinearImprovement
 from hypermap_lite.errors import ScenarioError
-from hypermap_lite.priors import AsJoint, BetaPrior, GaussianPrior, ProductPrior, WeightsPrior
+from hypermap_lite.priors import AsJoint, BetaPrior, GaussianPrior, ProductPrior, UniformPrior, WeightsPrior
 from hypermap_lite.space import CategoricalParameter, RealParameter
 from tests.acquisition.toy_field import toy_field
 
@@ -71,6 +71,21 @@ def test_without_floor_gradients_are_finite_where_the_prior_forbids() -> None:
     score, gradient = scorer.with_gradient(np.array([[0.25, 0.5], [0.75, 0.5]]))
     assert score[0] == -np.inf
     assert np.isfinite(gradient).all()
+
+
+@pytest.mark.parametrize("floor", [0.0, 0.05])
+def test_outside_the_range_of_a_uniform_prior_there_is_only_the_floor(floor: float) -> None:
+    axis = RealParameter(name="x", low=0, high=1)
+    ranged = ProductPrior(2, (((0,), AsJoint(UniformPrior(low=0.2, high=0.6).on(axis))),))
+    scorer = PriorWeighted(inner=inner(), prior=ranged, weight=2.0, floor=floor)
+    outside, inside = np.array([[0.1, 0.5]]), np.array([[0.4, 0.5]])
+    with np.errstate(divide="ignore"):
+        assert scorer.log_relative_density(outside)[0] == pytest.approx(np.log(floor))
+    assert scorer.log_relative_density(inside)[0] == pytest.approx(0.0)
+    for x in (outside, inside):
+        score, gradient = scorer.with_gradient(x)
+        assert score == pytest.approx(scorer(x))
+        assert gradient == pytest.approx(inner().with_gradient(x)[1])
 
 
 def test_the_default_strength_is_a_tenth_of_the_model_based_budget() -> None:

@@ -97,6 +97,15 @@ def test_overrides_apply(folder: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert "cost  maximize" in output
 
 
+def test_a_run_can_take_the_place_of_the_priors(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run.csv").write_text("x,n,size,mode,cost,gain\n1,2,32,safe,1,1\n2,2,64,fast,2,2\n")
+    assert main(["check", write(folder, GOOD), "--prior-from", "run.csv"]) == 0
+    output = capsys.readouterr()
+    assert "kde of 2 points, non-dominated rows of run.csv\n              over x, n, size, mode" in output.out
+    assert "evaluations 1 to 8: prior_sampling" in output.out
+    assert "note:" not in output.err
+
+
 def test_an_unknown_override_is_named(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", write(folder, GOOD), "--set", "budget.evals=33"]) == 2
     message = capsys.readouterr().err

@@ -13,13 +13,19 @@ import pytest
 from hypermap_lite.cli import main
 from tests.cli.scenarios import write_scenario
 
+K = {"parameter_type": "integer", "values": [0, 9]}
+
 
 def run(path, *options):
     return main(["run", str(path), "--no-plot", *options])
 
 
 def history(folder):
-    with (folder / "history.csv").open(newline="") as file:
+    return rows_of(folder / "history.csv")
+
+
+def rows_of(path):
+    with path.open(newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -241,6 +247,49 @@ def test_evaluator_that_does_not_import_is_named_with_its_place(tmp_path, capsys
     error = capsys.readouterr().err
     assert "$.evaluator.function: importing 'nowhere' failed: ModuleNotFoundError" in error
     assert "scenario.json" in error
+
+
+def test_front_of_another_run_replaces_the_priors(tmp_path, capsys, monkeypatch):
+    path = write_scenario(tmp_path, input_parameters={"k": {**K, "prior": {"type": "beta", "shape": "decay"}}})
+    assert run(path) == 0
+    capsys.readouterr()
+    monkeypatch.chdir(tmp_path)
+    options = ["--prior-from", "run", "--output-dir", "second"]
+    assert run(path, *options) == 0
+    assert "note: --prior-from run takes the place of the prior of k\n" in capsys.readouterr().err
+    recorded = json.loads((tmp_path / "second" / "scenario.json").read_text())
+    front = rows_of(tmp_path / "run" / "pareto.csv")
+    (prior,) = recorded["priors"]
+    assert prior["points"]["x"] == [float(row["x"]) for row in front]
+    assert prior["points"]["k"] == [int(row["k"]) for row in front]
+    assert recorded["input_parameters"]["k"]["prior"] is None
+    assert recorded["design_of_experiment"]["type"] == "prior_sampling"
+
+
+def test_run_with_the_prior_of_another_goes_on_with_the_points_it_began_with(tmp_path, capsys):
+    path, first = write_scenario(tmp_path), str(tmp_path / "run")
+    assert run(path, "--set", "budget.evaluations=4") == 0
+    options = ["--prior-from", first, "--output-dir", str(tmp_path / "second")]
+    assert run(path, *options, "--set", "budget.evaluations=3") == 0
+    assert run(path, *options, "--set", "budget.evaluations=4") == 0
+    before = history(tmp_path / "second")
+    with (tmp_path / "run" / "pareto.csv").open("a") as file:
+        file.write((tmp_path / "run" / "history.csv").read_text().splitlines()[1] + "\n")
+    assert run(path, *options) == 2
+    assert "$.priors[0].points.x: " in capsys.readouterr().err
+    assert run(tmp_path / "second" / "scenario.json", "--set", "budget.evaluations=8") == 0
+    assert history(tmp_path / "second")[:4] == before
+    assert len(history(tmp_path / "second")) == 8
+
+
+def test_command_to_go_on_keeps_the_prior(tmp_path):
+    from argparse import Namespace
+
+    from hypermap_lite.cli.run import command_to_go_on
+
+    options = {"seed": None, "workers": 2, "output_dir": None, "overrides": ["seed=3"], "prior_from": "my run"}
+    command = command_to_go_on(Namespace(scenario="s.json", **options))
+    assert command == "python -m hypermap_lite run s.json --workers 2 --prior-from 'my run' --set seed=3"
 
 
 @pytest.fixture

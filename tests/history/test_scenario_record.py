@@ -114,3 +114,25 @@ def test_record_without_versions_is_fine(tmp_path, caplog):
     (tmp_path / "scenario.json").write_text(json.dumps({**SCENARIO, "versions": None}))
     check_scenario(tmp_path / "scenario.json", SCENARIO)
     assert caplog.text == ""
+
+
+def test_an_option_that_older_records_do_not_have_is_no_difference_while_it_is_null():
+    before, now = {"prior": {"type": "uniform"}}, {"prior": {"type": "uniform", "low": None, "high": None}}
+    assert list(differing(before, now)) == []
+    assert list(differing(now, before)) == []
+    assert list(differing(before, {"prior": {"type": "uniform", "low": 2}})) == [("$.prior.low", "nothing", "2")]
+
+
+def test_the_file_of_a_prior_may_differ_but_not_its_points(tmp_path):
+    def scenario(file, last):
+        return {"priors": [{"type": "kde", "file": file, "points": {"x": [*map(float, range(500)), last]}}]}
+
+    write_scenario(tmp_path / "scenario.json", scenario("a.csv", 0.5))
+    check_scenario(tmp_path / "scenario.json", scenario("/home/me/a.csv", 0.5))
+    with pytest.raises(RunFolderError) as caught:
+        check_scenario(tmp_path / "scenario.json", scenario("a.csv", 0.7))
+    line = str(caught.value).splitlines()[1]
+    assert line.startswith("  $.priors[0].points.x: ... ")
+    assert "499, 0.5] ... there" in line
+    assert "499, 0.7] ... now" in line
+    assert len(line) < 160

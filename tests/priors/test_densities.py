@@ -38,6 +38,11 @@ CASES = [
     pytest.param(WeightsPrior(weights=[1, 0, 3]), ORDINAL, id="weights-ordinal"),
     pytest.param(WeightsPrior(weights=[0.1, 0.2, 0.3, 0.4]), CATEGORICAL, id="weights-categorical"),
     pytest.param(UniformPrior(), REAL, id="uniform"),
+    pytest.param(UniformPrior(low=0, high=4), REAL, id="uniform-range"),
+    pytest.param(UniformPrior(low=0.1), LOG, id="uniform-range-log"),
+    pytest.param(UniformPrior(low=2, high=20), INTEGER, id="uniform-range-integer"),
+    pytest.param(UniformPrior(low=2, high=5), LOG_INTEGER, id="uniform-range-log-integer"),
+    pytest.param(UniformPrior(low=2, high=99), ORDINAL, id="uniform-range-ordinal"),
 ]
 
 

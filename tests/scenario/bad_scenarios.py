@@ -60,6 +60,11 @@ def joint(mean: dict[str, Any], std: dict[str, Any]) -> str:
     return changed("priors", [{"type": "mixture", "components": [{"mean": mean, "std": std}]}])
 
 
+def density(**entry: Any) -> str:
+    """Return the good scenario as text with a kernel density for a joint prior."""
+    return changed("priors", [{"type": "kde", **entry}])
+
+
 REPEATED_OBJECTIVE = [{"name": "cost"}, {"name": "cost"}]
 P = "$.input_parameters.p"
 
@@ -208,6 +213,93 @@ BAD: dict[str, Bad] = {
     ),
     "joint_prior_names_differ": Bad(
         joint({"x": 0, "n": 1}, {"x": 1}), ("$.priors[0].components[0].std", "x", "all of x, n"), False
+    ),
+    "range_without_end": Bad(
+        prior("x", type="uniform", low=2, hihg=3), ("$.input_parameters.x.prior.hihg", "given 3", "'high'")
+    ),
+    "reversed_range": Bad(
+        prior("x", type="uniform", low=3, high=2),
+        ("$.input_parameters.x.prior.low", "from 3 to 2 is reversed", "low < high", "Swap"),
+        False,
+    ),
+    "empty_range": Bad(
+        prior("x", type="uniform", low=3, high=3),
+        ("$.input_parameters.x.prior.low", "from 3 to 3 is empty", "low < high"),
+        False,
+    ),
+    "range_outside_the_bounds": Bad(
+        prior("x", type="uniform", low=11),
+        ("$.input_parameters.x.prior:", "from 11 to the bound", "'x'", "a number from -5 to 10"),
+        False,
+    ),
+    "range_without_a_level": Bad(
+        prior("size", type="uniform", low=17, high=31),
+        ("$.input_parameters.size.prior:", "from 17 to 31", "'size'", "16, 32, 64"),
+        False,
+    ),
+    "range_of_a_categorical": Bad(
+        prior("mode", type="uniform", low=1),
+        ("$.input_parameters.mode.prior:", "'mode' has no order", "weights"),
+        False,
+    ),
+    "range_in_quotes": Bad(
+        prior("x", type="uniform", low="1"), ("$.input_parameters.x.prior.low", '"1" is a string', "Write 1 without")
+    ),
+    "density_of_a_missing_file": Bad(
+        density(file="bda.json"), ("$.priors[0].file", "no file 'bda.json'", "CSV file or run folder", "'bad.json'")
+    ),
+    "density_of_no_file": Bad(density(), ("$.priors[0]:", "no file to take points from", "Add 'file'")),
+    "density_of_what_is_no_csv": Bad(density(file="bad.json"), ("$.priors[0].file", "bad.json", "no column 'x'")),
+    "density_of_a_folder_that_is_no_run": Bad(
+        density(file="."), ("$.priors[0].file", "the folder '.' has no pareto.csv and no history.csv", "a run folder")
+    ),
+    "unknown_rows": Bad(
+        density(file="a.csv", rows="nondominated"),
+        ("$.priors[0].rows", '"nondominated"', "non_dominated, best, all", "'non_dominated'"),
+    ),
+    "rows_best_without_quantile": Bad(
+        density(file="a.csv", rows="best"), ("$.priors[0].quantile", "how many", "> 0 and <= 1", '"quantile": 0.1')
+    ),
+    "quantile_without_rows_best": Bad(
+        density(file="a.csv", quantile=0.1), ("$.priors[0].quantile", "not non_dominated", '"rows": "best"')
+    ),
+    "quantile_of_nothing": Bad(
+        density(file="a.csv", rows="best", quantile=0), ("$.priors[0].quantile", "0 is too small", "> 0 and <= 1")
+    ),
+    "density_of_an_unknown_parameter": Bad(
+        density(file="a.csv", parameters=["sice"]), ("$.priors[0].parameters[0]", "no parameter 'sice'", "'size'")
+    ),
+    "density_of_a_parameter_twice": Bad(
+        density(file="a.csv", parameters=["x", "x"]), ("$.priors[0].parameters", '"x" stands twice')
+    ),
+    "density_for_what_has_a_prior": Bad(
+        prior("x", type="beta", shape="decay")[:-1]
+        + ', "priors": [{"type": "kde", "file": "a.csv", "parameters": ["x"]}]}',
+        ("$.priors[0].parameters[0]", "'x' already has a prior at $.input_parameters.x.prior"),
+    ),
+    "points_of_an_unknown_parameter": Bad(
+        density(points={"sice": [16]}), ("$.priors[0].points.sice", "no parameter 'sice'", "'size'")
+    ),
+    "points_of_other_parameters": Bad(
+        density(points={"x": [1]}, parameters=["n"]), ("$.priors[0].parameters", "the points are of x")
+    ),
+    "points_of_different_number": Bad(
+        density(points={"x": [1, 2], "n": [1]}), ("$.priors[0].points.n", "there are 1 values", "as many"), False
+    ),
+    "point_outside_the_bounds": Bad(
+        density(points={"x": [1, 12]}), ("$.priors[0].points.x[1]", "12", "a number from -5 to 10"), False
+    ),
+    "point_that_is_null": Bad(
+        density(points={"x": [1, None]}), ("$.priors[0].points.x[1]", "null is null", "a number or a string")
+    ),
+    "bandwidth_factor_zero": Bad(
+        density(points={"x": [1]}, bandwidth_factor=0), ("$.priors[0].bandwidth_factor", "0 is too small", "> 0")
+    ),
+    "negative_point_weight": Bad(
+        density(points={"x": [1]}, point_weights=[-1]), ("$.priors[0].point_weights[0]", "-1 is too small", ">= 0")
+    ),
+    "misspelt_option_of_a_density": Bad(
+        density(points={"x": [1]}, bandwith_factor=2), ("$.priors[0].bandwith_factor", "given 2", "'bandwidth_factor'")
     ),
     # objectives
     "unknown_goal": Bad(

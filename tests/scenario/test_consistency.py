@@ -55,3 +55,15 @@ def test_an_objective_may_be_called_like_a_placeholder() -> None:
 
 def test_a_design_may_take_the_whole_budget() -> None:
     check_consistency(complete(budget={"evaluations": 8}, design_of_experiment={"number_of_samples": 8}))
+
+
+def test_a_uniform_prior_without_a_range_leaves_room_for_a_joint_one() -> None:
+    x = GOOD["input_parameters"]["x"]
+    joint = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+    check_consistency(complete(input_parameters={"x": x | {"prior": {"type": "uniform"}}}, priors=joint))
+    with pytest.raises(ScenarioError, match="'x' already has a prior"):
+        complete(input_parameters={"x": x | {"prior": {"type": "uniform", "low": 2}}}, priors=joint)
+
+
+def test_a_density_may_speak_of_any_kind_of_parameter() -> None:
+    check_consistency(complete(priors=[{"type": "kde", "points": {"x": [1], "size": [32], "mode": ["safe"]}}]))

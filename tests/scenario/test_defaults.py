@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 from typing import Any
 
+import pytest
+
 from hypermap_lite.scenario.defaults import fill, fill_derived, has_priors
 from hypermap_lite.scenario.schemas import root_schema
 from tests.scenario.bad_scenarios import GOOD
@@ -48,3 +50,11 @@ def test_a_uniform_prior_says_nothing() -> None:
     assert not has_priors(uniform)
     uniform["input_parameters"]["n"]["prior"] = {"type": "beta", "shape": "decay"}
     assert has_priors(uniform)
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_a_uniform_prior_with_a_range_says_something(end: str) -> None:
+    ranged = copy.deepcopy(GOOD)
+    ranged["input_parameters"]["x"]["prior"] = {"type": "uniform", end: 0}
+    assert has_priors(ranged)
+    assert filled(input_parameters=ranged["input_parameters"])["design_of_experiment"]["type"] == "prior_sampling"

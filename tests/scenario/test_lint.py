@@ -85,6 +85,25 @@ def test_a_joint_prior_outside_the_bounds_is_named() -> None:
 
 
 @pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        pytest.param({"points": {"x": [5]}}, "10 % of each range.", id="one"),
+        pytest.param({"points": {"x": [5, 5]}}, "10 % of each range.", id="one-twice"),
+        pytest.param({"points": {"x": [5, 6]}, "point_weights": [2, 0]}, "10 % of each range.", id="one-that-counts"),
+        pytest.param({"points": {"x": [5], "mode": ["a"]}}, "it says nothing about levels.", id="one-with-a-level"),
+    ],
+)
+def test_a_density_over_a_single_point_is_named(options: dict[str, Any], says: str) -> None:
+    (warning,) = warnings(priors=[{"type": "kde", **options}])
+    assert warning.startswith("$.priors[0]: it rests on a single point")
+    assert warning.endswith(says)
+
+
+def test_a_density_over_several_points_is_fine() -> None:
+    assert warnings(priors=[{"type": "kde", "points": {"x": [5, 6], "mode": ["a", "a"]}}]) == []
+
+
+@pytest.mark.parametrize(
     ("kind", "scale", "values", "mean", "std", "expected"),
     [
         pytest.param("real", "linear", (0.0, 1.0), 0.5, 0.5, 0.6827, id="one_sigma"),

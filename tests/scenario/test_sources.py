@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hypermap_lite.scenario.sources import Layer, keys_of, layer_of, origin_of, path_of
+from hypermap_lite.scenario.sources import Layer, folders_of, keys_of, layer_of, origin_of, path_of
 
 LAYERS = (
     Layer("base.json", {"seed": 1, "objectives": [{"name": "a"}], "budget": {"evaluations": 5}}),
@@ -42,3 +42,10 @@ def test_keys_and_paths_are_inverse() -> None:
     keys = ("priors", 0, "components", 12, "mean", "x-1")
     assert keys_of(path_of(keys)) == keys
     assert path_of(keys) == "$.priors[0].components[12].mean.x-1"
+
+
+def test_files_are_looked_for_beside_their_layer_then_beside_the_scenario() -> None:
+    layers = (Layer("a/base.json", {"seed": 1}, Path("/a")), Layer("--set seed=2", {"budget": 2}))
+    assert folders_of("$.seed", layers, Path("/b")) == (Path("/a"), Path("/b"))
+    assert folders_of("$.budget", layers, Path("/b")) == (Path("/b"),)
+    assert folders_of("$.seed", (), Path("/b")) == (Path("/b"),)

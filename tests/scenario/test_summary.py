@@ -69,3 +69,16 @@ def test_the_budget_line_says_batches_and_minutes() -> None:
     assert "30 evaluations, 3 at a time, at most 2.5 min" in page(
         budget={"evaluations": 30, "batch_size": 3, "minutes": 2.5}
     )
+
+
+def test_a_density_says_what_it_rests_on() -> None:
+    points = {"x": [1, 2, 3], "mode": ["fast", "safe", "safe"]}
+    lines = page(priors=[{"type": "kde", "file": "run", "rows": "best", "quantile": 0.1, "points": points}])
+    assert "priors      kde of 3 points, best 0.1 of the rows of run\n              over x, mode\n" in lines
+    lines = page(priors=[{"type": "kde", "points": {"x": [1]}, "independent": True, "bandwidth_factor": 2}])
+    assert "kde(bandwidth_factor=2, independent=True) of 1 point\n" in lines
+
+
+def test_a_uniform_range_shows_its_ends() -> None:
+    x = GOOD["input_parameters"]["x"] | {"prior": {"type": "uniform", "low": 2}}
+    assert "uniform(low=2)" in page(input_parameters={"x": x})
