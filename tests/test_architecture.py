@@ -34,7 +34,19 @@ FAMILIES = {"priors", "design", "surrogates", "scalarization", "acquisition", "m
 
 NARROWER = {
     "scenario": {"errors", "typing", "objectives", "pareto", "space", "history", "evaluation.placeholders", "scenario"},
-    "plotting": {"errors", "typing", "objectives", "pareto", "history", "plotting"},
+    # assembly, scenario, space and priors for the pictures of parameters and priors, which a scenario's text only names
+    "plotting": {
+        "errors",
+        "typing",
+        "objectives",
+        "pareto",
+        "history",
+        "plotting",
+        "assembly",
+        "scenario",
+        "space",
+        "priors",
+    },
 }
 """Parts that may know less than their layer allows: scenarios only name components, pictures only read files."""
 

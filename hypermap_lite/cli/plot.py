@@ -17,6 +17,9 @@ KINDS: Final = {
     "pareto": "the evaluations and the front, a panel per pair of objectives",
     "hypervolume": "hypervolume against evaluations; repetitions as mean with standard-error band",
     "objectives": "each objective against evaluations, with the best so far and the failures",
+    "attainment": "for two objectives, the median front of repetitions, with a band from 25 % to 75 % of them",
+    "parameters": "the front in parallel coordinates, an axis per parameter and per objective",
+    "prior": "the prior on two parameters; RUN may be a scenario file",
 }
 """What `hypermap_lite.plotting.KINDS` draws, in the words of the help."""
 
@@ -27,6 +30,7 @@ kinds:
 examples:
   python -m hypermap_lite plot pareto outputs/branin
   python -m hypermap_lite plot hypervolume outputs/with_prior outputs/no_prior --labels "operator prior,no prior"
+  python -m hypermap_lite plot prior my_scenario.json --parameters speed,stiffness
   python -m hypermap_lite plot hypervolume "operator prior=outputs/op_*" "no prior=outputs/no_*" --output figure.pdf
 
 Each picture becomes a PNG and a PDF (or the one that --output names), in the run folder if there is one run and
@@ -43,7 +47,7 @@ def add_parser(subparsers: Subparsers) -> None:
         epilog=EPILOG.format(kinds="\n".join(f"  {name:<13}{text}" for name, text in KINDS.items())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("kind", metavar="KIND", choices=list(KINDS), help="pareto, hypervolume or objectives")
+    parser.add_argument("kind", metavar="KIND", choices=list(KINDS), help=f"one of {', '.join(KINDS)}")
     parser.add_argument(
         "runs",
         metavar="RUN",
@@ -54,6 +58,12 @@ def add_parser(subparsers: Subparsers) -> None:
     parser.add_argument("--output", "-o", metavar="FILE", help="FILE.png, FILE.pdf, or FILE without ending for both")
     parser.add_argument("--title", help="text above the picture (default: the application's name; '' for none)")
     add_reference_point_option(parser)
+    parser.add_argument(
+        "--parameters",
+        metavar="A,B",
+        help="parameters to show, separated by commas: two for prior (default: the first that have one), any for "
+        "parameters (default: all)",
+    )
     parser.add_argument(
         "--csv", action="store_true", help="write the numbers drawn beside the picture, as FILE_data.csv"
     )
@@ -75,8 +85,9 @@ def execute(args: argparse.Namespace) -> int:
     """Draw the picture and list its files on stdout."""
     from hypermap_lite.plotting import plot_function
 
+    names = [name.strip() for name in args.parameters.split(",")] if args.parameters is not None else None
     folders, labels = expand_runs(args.runs, args.labels.split(",") if args.labels is not None else None)
-    files = plot_function(args.kind)(
+    files = plot_function(args.kind, parameters=names)(
         folders,
         args.output,
         labels=labels,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final, Protocol, cast
 
@@ -58,24 +59,40 @@ KINDS: Final[Mapping[str, str]] = {
     "pareto": "hypermap_lite.plotting.pareto:plot_pareto",
     "hypervolume": "hypermap_lite.plotting.hypervolume:plot_hypervolume",
     "objectives": "hypermap_lite.plotting.objectives:plot_objectives",
+    "attainment": "hypermap_lite.plotting.attainment:plot_attainment",
+    "parameters": "hypermap_lite.plotting.parameters:plot_parameters",
+    "prior": "hypermap_lite.plotting.prior:plot_prior",
 }
 """Kinds of pictures and the function, as ``module:name``, that draws each."""
 
+KINDS_OF_PARAMETERS: Final = ("parameters", "prior")
+"""Kinds that show parameters; their functions take the names of those to show as one more keyword, ``parameters``."""
 
-def plot_function(kind: str) -> PlotFunction:
+
+def plot_function(kind: str, *, parameters: Sequence[str] | None = None) -> PlotFunction:
     """Return the function that draws a kind of picture.
+
+    Parameters
+    ----------
+    kind
+        One of `KINDS`.
+    parameters
+        Names of the parameters it shall show, for those of `KINDS_OF_PARAMETERS`; by default the kind chooses.
 
     Raises
     ------
     UsageError
-        If there is no such kind, or Matplotlib is not installed.
+        If there is no such kind, it shows no parameters, or Matplotlib is not installed.
     """
     if kind not in KINDS:
         raise UsageError(f"unknown kind of picture '{kind}'; known: {', '.join(KINDS)}. {nearest(kind, KINDS)}".strip())
+    if parameters is not None and kind not in KINDS_OF_PARAMETERS:
+        raise UsageError(f"`plot {kind}` shows no parameters to choose from; {', '.join(KINDS_OF_PARAMETERS)} do")
     module, _, name = KINDS[kind].partition(":")
     try:
-        return cast(PlotFunction, getattr(importlib.import_module(module), name))
+        function = getattr(importlib.import_module(module), name)
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] != "matplotlib":
             raise
         raise UsageError("pictures need Matplotlib: pip install 'hypermap-lite[plot]'") from error
+    return cast(PlotFunction, function if parameters is None else partial(function, parameters=parameters))

@@ -18,15 +18,13 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.plotting import style
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
 from hypermap_lite.plotting.runs import Run, by_label, legend_labels, load_runs, require_drawable
+from hypermap_lite.plotting.view import View, robust_view
 from hypermap_lite.typing import BoolArray, FloatArray
 
 MAX_OBJECTIVES: Final = 5
 """Ten panels; more cannot be read."""
 
 PANELS_PER_ROW: Final = 3
-
-VIEW_MARGIN: Final = 0.06
-"""Empty border around the points, as a fraction of their range."""
 
 
 class Detail(Enum):
@@ -49,10 +47,10 @@ def plot_pareto(
     """Draw the Pareto fronts of one or several runs; see `hypermap_lite.plotting.PlotFunction`.
 
     With two objectives the front is a staircase that bounds the dominated region; with three to five each pair of
-    objectives has a panel. Error bars are one standard error over the replicates.
+    objectives has a panel. Error bars are one standard error over the replicates. All fronts and the reference point
+    are in view; evaluations far from both and from most others are counted, and marked at the border.
     """
     runs = load_runs(folders, labels)
-    require_drawable(runs)
     n_objectives = len(runs[0].objectives)
     if not 2 <= n_objectives <= MAX_OBJECTIVES:
         raise UsageError(
@@ -60,6 +58,7 @@ def plot_pareto(
             "try `plot objectives`"
         )
     reference = common_reference_point(runs, reference_point)
+    require_drawable(runs, reference.values)
     target = style.output_path(output, runs, "pareto")
     with style.house_style():
         figure = _draw_plane(runs, reference) if n_objectives == 2 else _draw_pairs(runs, reference)
@@ -93,12 +92,12 @@ def _draw_plane(runs: Sequence[Run], reference: ReferencePoint) -> Figure:
     """Draw two objectives: one panel, with the staircase of each run."""
     figure = style.new_figure(7.2, 5.6)
     axes = figure.subplots()
-    is_marked = _draw_panel(axes, runs, (0, 1), reference)
+    is_outside = _draw_panel(axes, runs, (0, 1), reference)
     detail = _detail_for(runs)
     for index, group in enumerate(by_label(runs).values()):
         for run in group:
             _draw_front_line(axes, run, style.colour(index), detail)
-    style.add_legend(figure, _legend(runs, reference if is_marked else None, line="-"))
+    style.add_legend(figure, _legend(runs, reference, line="-", n_outside=int(is_outside.sum())))
     return figure
 
 
@@ -108,12 +107,13 @@ def _draw_pairs(runs: Sequence[Run], reference: ReferencePoint) -> Figure:
     n_rows = math.ceil(len(pairs) / PANELS_PER_ROW)
     figure = style.new_figure(13.0, 4.3 * n_rows + 0.7)
     grid = figure.subplots(n_rows, PANELS_PER_ROW, squeeze=False)
-    is_marked = [_draw_panel(axes, runs, pair, reference) for axes, pair in zip(grid.flat, pairs, strict=False)]
+    is_outside = [_draw_panel(axes, runs, pair, reference) for axes, pair in zip(grid.flat, pairs, strict=False)]
     for axes in grid.flat[len(pairs) :]:
         axes.set_axis_off()
     for axes in grid.flat[: len(pairs)]:
         axes.locator_params(nbins=5)
-    style.add_legend(figure, _legend(runs, reference if any(is_marked) else None, line="none"))
+    n_outside = int(np.any(is_outside, axis=0).sum())
+    style.add_legend(figure, _legend(runs, reference, line="none", n_outside=n_outside))
     return figure
 
 
@@ -124,22 +124,33 @@ def _detail_for(runs: Sequence[Run]) -> Detail:
     return Detail.FRONT_ERRORS if len(by_label(runs)) == len(runs) else Detail.FRONT_ONLY
 
 
-def _draw_panel(axes: Axes, runs: Sequence[Run], pair: tuple[int, int], reference: ReferencePoint) -> bool:
-    """Draw the points of all runs in the plane of two objectives; say whether the reference point is in view."""
+def _draw_panel(axes: Axes, runs: Sequence[Run], pair: tuple[int, int], reference: ReferencePoint) -> BoolArray:
+    """Draw the points of all runs in the plane of two objectives; tell which of all evaluations are not in view."""
     columns = list(pair)
     detail = _detail_for(runs)
-    shown = [run.is_front if detail is Detail.FRONT_ONLY else run.is_completed for run in runs]
-    _set_view(axes, np.vstack([run.values[rows][:, columns] for run, rows in zip(runs, shown, strict=True)]))
+    corner = reference.values[columns]
+    fronts = np.vstack([run.values[run.is_front][:, columns] for run in runs])
+    rest = np.vstack([run.values[run.is_completed & ~run.is_front][:, columns] for run in runs])
+    view = robust_view(np.vstack([fronts, corner]), rest[:0] if detail is Detail.FRONT_ONLY else rest)
+    view.apply(axes)
+    is_outside = []
     for index, group in enumerate(by_label(runs).values()):
         for run in group:
             _draw_points(axes, run, columns, index, detail)
-    corner = reference.values[columns]
-    is_marked = _is_inside(axes, corner)
-    if is_marked:
-        axes.plot(*corner, marker="x", markersize=9, markeredgewidth=2.2, color="black", zorder=6)
+            is_outside.append(_draw_outside(axes, run, columns, index, detail, view))
+    axes.plot(*corner, linestyle="none", marker="x", markersize=9, markeredgewidth=2.2, color="black", zorder=6)
     axes.set_xlabel(style.axis_label(runs[0].objectives[pair[0]]))
     axes.set_ylabel(style.axis_label(runs[0].objectives[pair[1]]))
-    return is_marked
+    return np.concatenate(is_outside)
+
+
+def _draw_outside(axes: Axes, run: Run, columns: list[int], index: int, detail: Detail, view: View) -> BoolArray:
+    """Mark the evaluations of one run that are drawn, but not in view; tell which they are, shape (n,)."""
+    if detail is Detail.FRONT_ONLY:
+        return np.zeros(len(run.rows), dtype=bool)
+    points = run.values[:, columns]
+    view.draw_outside(axes, points[run.is_completed], style.GREY if detail is Detail.ALL else style.colour(index))
+    return run.is_completed & ~view.contains(points)
 
 
 def _draw_points(axes: Axes, run: Run, columns: list[int], index: int, detail: Detail) -> None:
@@ -212,21 +223,7 @@ def _draw_front_line(axes: Axes, run: Run, colour: str, detail: Detail) -> None:
         axes.fill(*region.T, color=colour, alpha=0.07, linewidth=0, zorder=1)
 
 
-def _set_view(axes: Axes, points: FloatArray) -> None:
-    """Fix the limits around the points, shape (n, 2)."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = VIEW_MARGIN * np.where(high > low, high - low, np.maximum(np.abs(high), 1.0))
-    axes.set_xlim(low[0] - margin[0], high[0] + margin[0])
-    axes.set_ylim(low[1] - margin[1], high[1] + margin[1])
-
-
-def _is_inside(axes: Axes, point: FloatArray) -> bool:
-    """Say whether a point lies within the limits of a panel."""
-    low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
-    return bool((low <= point).all() and (point <= high).all())
-
-
-def _legend(runs: Sequence[Run], reference: ReferencePoint | None, *, line: str) -> list[Line2D]:
+def _legend(runs: Sequence[Run], reference: ReferencePoint, *, line: str, n_outside: int) -> list[Line2D]:
     """Return the entries of the legend: the labels first, then what the marks mean."""
     detail = _detail_for(runs)
     labels = legend_labels(runs)
@@ -244,9 +241,10 @@ def _legend(runs: Sequence[Run], reference: ReferencePoint | None, *, line: str)
         entries.append(style.legend_entry("initial design", style.GREY, "s", hollow=True))
     if shows_all and any(np.isfinite(run.standard_errors).any() for run in runs):
         entries.append(style.legend_entry("\N{PLUS-MINUS SIGN} standard error", style.INK, "|", size=11))
-    if reference is not None:
-        kind = "reference point (inferred)" if reference.is_inferred else "reference point"
-        entries.append(style.legend_entry(kind, "black", "x", size=8))
+    if n_outside:
+        entries.append(style.legend_entry(f"{n_outside} outside", style.GREY, "v"))
+    kind = "reference point (inferred)" if reference.is_inferred else "reference point"
+    entries.append(style.legend_entry(kind, "black", "x", size=8))
     return entries
 
 

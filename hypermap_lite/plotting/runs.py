@@ -163,12 +163,14 @@ def load_runs(sources: Sequence[str | Path], labels: Sequence[str] | None = None
     return [replace(run, label=name) for run, name in zip(runs, names, strict=True)]
 
 
-def require_drawable(runs: Sequence[Run]) -> None:
-    """Raise UsageError if values are so large that no axis can be drawn around them."""
+def require_drawable(runs: Sequence[Run], reference_point: FloatArray | None = None) -> None:
+    """Raise UsageError if values, or the reference point's, are so large that no axis can be drawn around them."""
     for run in runs:
         largest = float(np.nanmax(np.abs(run.values)))
         if largest > LARGEST_DRAWN:
             raise UsageError(f"{run.folder}: objective values up to {largest:g} in size cannot be drawn")
+    if reference_point is not None and np.abs(reference_point).max() > LARGEST_DRAWN:
+        raise UsageError(f"a reference point of {np.abs(reference_point).max():g} in size cannot be drawn")
 
 
 def by_label(runs: Sequence[Run]) -> dict[str, list[Run]]:

@@ -7,7 +7,7 @@ import pytest
 from hypermap_lite import plotting
 from hypermap_lite.cli import plot
 from hypermap_lite.errors import RunFolderError, UsageError
-from tests.plotting.run_folders import write_run
+from tests.plotting.run_folders import TWO_PARAMETERS, write_run
 
 
 def run_command(*arguments):
@@ -20,7 +20,7 @@ def run_command(*arguments):
 def outputs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("op_2", "op_1", "no_1"):
-        write_run(tmp_path / "outputs" / name, [[1.0, 2.0], [2.0, 1.0]], n_design=1)
+        write_run(tmp_path / "outputs" / name, [[1.0, 2.0], [2.0, 1.0]], n_design=1, parameters=TWO_PARAMETERS)
     (tmp_path / "outputs" / "op_notes.txt").touch()
     return tmp_path / "outputs"
 
@@ -42,6 +42,28 @@ def test_options_reach_the_picture(outputs, capsys):
     assert capsys.readouterr().out.split() == ["x.png", "x_data.csv"]
     lines = (outputs.parent / "x_data.csv").read_text().splitlines()
     assert {line.split(",")[0] for line in lines[1:]} == {"with", "outputs/no_1"}
+
+
+def test_parameters_are_chosen_by_name(outputs, capsys):
+    assert run_command("prior", "outputs/op_1", "--parameters", "k, x", "--csv", "-o", "p.png") == 0
+    assert (outputs.parent / "p_data.csv").read_text().startswith("what,k,x,density")
+
+
+def test_scenario_file_stands_for_its_prior(outputs, capsys):
+    (outputs.parent / "mine.json").write_bytes((outputs / "op_1" / "scenario.json").read_bytes())
+    assert run_command("prior", "mine.json") == 0
+    assert capsys.readouterr().out.split() == ["prior.png", "prior.pdf"]
+
+
+@pytest.mark.parametrize("kind", ["parameters", "prior"])
+def test_unknown_parameter_is_an_error_with_the_nearest_name(outputs, kind):
+    with pytest.raises(UsageError, match=r"unknown parameter 'X1'; known: x, k"):
+        run_command(kind, "outputs/op_1", "--parameters", "X1,k")
+
+
+def test_parameters_of_a_kind_without_them_are_an_error(outputs):
+    with pytest.raises(UsageError, match="`plot pareto` shows no parameters to choose from"):
+        run_command("pareto", "outputs/op_1", "--parameters", "x,k")
 
 
 def test_pattern_with_a_label_makes_repetitions(outputs):

@@ -7,13 +7,13 @@ import pytest
 
 from hypermap_lite import plotting
 from hypermap_lite.errors import UsageError
-from tests.plotting.run_folders import write_run
+from tests.plotting.run_folders import TWO_PARAMETERS, write_run
 
 
 @pytest.mark.parametrize("kind", plotting.KINDS)
 def test_every_kind_draws_without_a_display(kind, tmp_path, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
-    folder = write_run(tmp_path / "run", [[1.0, 2.0], [2.0, 1.0]], n_design=1)
+    folder = write_run(tmp_path / "run", [[1.0, 2.0], [2.0, 1.0]], parameters=TWO_PARAMETERS, n_design=1)
     files = plotting.plot_function(kind)([folder], tmp_path / "picture", title="t", data=True)
     assert [f.name for f in files] == ["picture.png", "picture.pdf", "picture_data.csv"]
     assert all(f.stat().st_size > 0 for f in files)
@@ -22,6 +22,27 @@ def test_every_kind_draws_without_a_display(kind, tmp_path, monkeypatch):
 def test_unknown_kind_is_an_error_with_the_nearest_name():
     with pytest.raises(UsageError, match=r"unknown kind of picture 'paretto'; known: .*Did you mean 'pareto'"):
         plotting.plot_function("paretto")
+
+
+@pytest.mark.parametrize("kind", [kind for kind in plotting.KINDS if kind not in plotting.KINDS_OF_PARAMETERS])
+def test_kinds_without_parameters_refuse_a_choice_of_them(kind):
+    with pytest.raises(UsageError, match=f"`plot {kind}` shows no parameters to choose from; parameters, prior do"):
+        plotting.plot_function(kind, parameters=["x"])
+
+
+@pytest.mark.parametrize("kind", plotting.KINDS_OF_PARAMETERS)
+def test_kinds_of_parameters_take_a_choice_of_them(kind, tmp_path):
+    folder = write_run(tmp_path / "run", [[1.0, 2.0]], parameters=TWO_PARAMETERS)
+    *_, file = plotting.plot_function(kind, parameters=["k", "x"])([folder], tmp_path / "p.png", data=True)
+    header = file.read_text().splitlines()[0].split(",")
+    assert header.index("k") + 1 == header.index("x")
+
+
+@pytest.mark.parametrize("kind", plotting.KINDS)
+def test_every_kind_draws_equal_files_twice(kind, tmp_path):
+    folder = write_run(tmp_path / "run", [[1.0, 2.0], [2.0, 1.0], [0.0, 0.0]], n_design=2, parameters=TWO_PARAMETERS)
+    first, second = (plotting.plot_function(kind)([folder], tmp_path / name, data=True) for name in "ab")
+    assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
 
 
 def test_missing_matplotlib_is_an_error_that_says_what_to_install(monkeypatch):

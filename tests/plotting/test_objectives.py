@@ -5,7 +5,6 @@ import csv
 import numpy as np
 import pytest
 
-from hypermap_lite.plotting import style
 from hypermap_lite.plotting.objectives import plot_objectives, running_best
 from hypermap_lite.plotting.runs import load_run
 from tests.plotting.run_folders import write_run
@@ -18,14 +17,6 @@ Y = [[np.nan] * 2, [1.0, 5.0], [np.nan] * 2, [3.0, 7.0], [np.nan] * 2, [2.0, 4.0
 @pytest.fixture
 def folder(tmp_path):
     return write_run(tmp_path / "run", Y, objectives=MIXED, states=STATES, n_design=2, sem=np.array(Y) / 10)
-
-
-@pytest.fixture
-def figures(monkeypatch):
-    saved = []
-    save = style.save
-    monkeypatch.setattr(style, "save", lambda figure, output: saved.append(figure) or save(figure, output))
-    return saved
 
 
 def legend_of(figure):

@@ -13,18 +13,21 @@ from tests.plotting.run_folders import write_run
 MIXED = ({"name": "gain", "goal": "maximize"}, {"name": "cost", "goal": "minimize"})
 
 
-@pytest.fixture
-def figures(monkeypatch):
-    """Figures as they are saved, for a look at what was drawn."""
-    saved = []
-    save = style.save
-    monkeypatch.setattr(style, "save", lambda figure, output: saved.append(figure) or save(figure, output))
-    return saved
-
-
 def staircase_of(figure):
     (line,) = [line for line in figure.axes[0].lines if line.get_linestyle() == "-"]
     return line.get_xydata()
+
+
+def limits_of(figure):
+    """Return the limits of the first panel, a row per axis."""
+    axes = figure.axes[0]
+    return np.array([axes.get_xlim(), axes.get_ylim()])
+
+
+def triangles_of(figure):
+    """Return how many points each direction has, of those that lie outside of the first panel."""
+    counts = {line.get_marker(): len(line.get_xdata()) for line in figure.axes[0].lines}
+    return {shape: counts[shape] for shape in "<>v^" if counts.get(shape)}
 
 
 def legend_of(figure):
@@ -70,9 +73,45 @@ def test_legend_explains_what_is_drawn(tmp_path, figures):
     assert legend_of(figures[0])[0].startswith("Pareto front (")
 
 
-def test_reference_point_out_of_view_is_not_drawn(tmp_path, figures):
+def test_chosen_reference_point_is_always_in_view(tmp_path, figures):
     plot_pareto([run_with_errors(tmp_path)], tmp_path / "a.png", reference_point={"performance": -99, "safety": -1})
-    assert "reference point" not in legend_of(figures[0])
+    assert "reference point" in legend_of(figures[0])
+    assert figures[0].axes[0].get_xlim()[0] < -99
+
+
+def test_reference_point_that_no_axis_holds_is_refused(tmp_path):
+    with pytest.raises(UsageError, match=r"reference point of 1e\+308 in size cannot be drawn"):
+        plot_pareto([run_with_errors(tmp_path)], tmp_path / "a.png", reference_point={"performance": -1e308})
+
+
+def test_a_bad_evaluation_does_not_squeeze_the_front(tmp_path, figures):
+    Y = [[i, 10.0 - i] for i in range(10)] + [[-1e6, 3.0], [2.0, -1e6], [-1e6, -1e7]]
+    plot_pareto([write_run(tmp_path, Y)], tmp_path / "a.png")
+    assert limits_of(figures[0]).min() > -20
+    assert "3 outside" in legend_of(figures[0])
+    assert triangles_of(figures[0]) == {"<": 1, "v": 2}
+
+
+def test_front_is_in_view_however_far_its_ends_are(tmp_path, figures):
+    Y = [[i, 10.0 - i] for i in range(10)] + [[-1e6, 11.0], [10.0, -1e6]]
+    plot_pareto([write_run(tmp_path, Y)], tmp_path / "a.png")
+    assert limits_of(figures[0])[:, 0].max() < -1e6
+    assert not any("outside" in text for text in legend_of(figures[0]))
+
+
+def test_evaluation_outside_of_several_panels_counts_once(tmp_path, figures):
+    objectives = [{"name": name} for name in "abc"]
+    Y = [[i, 10.0 - i, 5.0] for i in range(10)] + [[1e6, 1e6, 1e6]]
+    plot_pareto([write_run(tmp_path, Y, objectives=objectives)], tmp_path / "a.png")
+    assert "1 outside" in legend_of(figures[0])
+
+
+def test_points_outside_have_the_colour_of_their_label(tmp_path, figures):
+    Y = [[1, 2], [2, 1], [2, 1], [1, 2]]
+    folders = [write_run(tmp_path / "a", [*Y, [-1e6, 1]]), write_run(tmp_path / "b", Y)]
+    plot_pareto(folders, tmp_path / "a.png")
+    (mark,) = [line for line in figures[0].axes[0].lines if line.get_marker() == "<" and len(line.get_xdata())]
+    assert mark.get_markerfacecolor() == style.colour(0)
 
 
 def test_error_bars_only_where_there_are_replicates(tmp_path, figures):

@@ -53,7 +53,7 @@ def test_folder_may_be_called_like_a_table(tmp_path):
     assert load_run(folder).folder == folder
 
 
-@pytest.mark.parametrize("kind", ["pareto", "objectives", "hypervolume"])
+@pytest.mark.parametrize("kind", ["pareto", "objectives", "hypervolume", "attainment", "parameters"])
 def test_values_that_no_axis_holds_are_refused(tmp_path, kind):
     folder = write_run(tmp_path, [[1e308, -1e308], [-1e308, 1e308]])
     with pytest.raises(UsageError, match=r"values up to 1e\+308 in size cannot be drawn"):
