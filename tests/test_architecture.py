@@ -25,6 +25,7 @@ LAYERS = (
     ("assembly",),
     ("run", "ask_tell"),
     ("plotting",),
+    ("study",),
     ("cli",),
     ("__main__",),
 )

@@ -14,9 +14,11 @@ from hypermap_lite.cli import main
 from hypermap_lite.errors import NoValidEvaluationError
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.lint import lint
+from hypermap_lite.study import load_study
 
 EXAMPLES = Path(__file__).parents[1] / "example_scenarios"
-SCENARIOS = sorted(EXAMPLES.rglob("*.json"))
+STUDIES = sorted(EXAMPLES.glob("robot/studies/*.json"))
+SCENARIOS = sorted({*EXAMPLES.rglob("*.json")} - {*STUDIES})
 LIGHT = [file for file in SCENARIOS if "robot" not in file.parts]
 ROBOT = [file for file in SCENARIOS if "robot" in file.parts]
 
@@ -71,6 +73,20 @@ def test_an_example_is_named_after_its_file_and_stands_in_the_table(file: Path) 
 def test_examples_have_names_of_their_own() -> None:
     names = [load_scenario(file).application_name for file in SCENARIOS]
     assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize("file", STUDIES, ids=name_of)
+@pytest.mark.parametrize("is_quick", [False, True], ids=["whole", "quick"])
+def test_an_example_study_loads_and_compares_examples(file: Path, is_quick: bool) -> None:
+    study = load_study(file, is_quick=is_quick)
+    assert study.name.removesuffix("_quick") == file.stem
+    assert study.description
+    assert {variant.scenario.resolve() for variant in study.variants} <= set(SCENARIOS)
+    assert [warning for variant in study.variants for warning in lint(variant.effective)] == []
+
+
+def test_every_robot_task_has_an_example_study() -> None:
+    assert {file.parent.name for file in ROBOT} <= {file.stem for file in STUDIES}
 
 
 def test_a_robot_run_has_the_same_rows_with_any_number_of_workers(tmp_path: Path) -> None:

@@ -16,11 +16,11 @@ from types import ModuleType
 from typing import Final
 
 from hypermap_lite import __version__
-from hypermap_lite.cli import check, pareto, plot, run
+from hypermap_lite.cli import check, pareto, plot, run, study
 from hypermap_lite.cli.streams import WatchedStream, robust_streams
 from hypermap_lite.errors import HypermapLiteError, UsageError, nearest
 
-COMMANDS: Final[dict[str, ModuleType]] = {"run": run, "check": check, "pareto": pareto, "plot": plot}
+COMMANDS: Final[dict[str, ModuleType]] = {"run": run, "check": check, "pareto": pareto, "plot": plot, "study": study}
 """Subcommands by name; each module has `add_parser` and `execute`."""
 
 PROGRAM: Final = "python -m hypermap_lite"

@@ -84,7 +84,7 @@ def front_as_table(run: Run) -> str:
         [row.get("trial", ""), *(_with_error(row, name) for name in names), *(_shorten(row[p]) for p in parameters)]
         for row in rows
     ]
-    return _align([header, *lines])
+    return align([header, *lines])
 
 
 def describe_front(run: Run, reference_point: Mapping[str, float] | None = None) -> str:
@@ -125,7 +125,7 @@ def _shorten(text: str) -> str:
         return text
 
 
-def _align(lines: Sequence[Sequence[str]]) -> str:
+def align(lines: Sequence[Sequence[str]]) -> str:
     """Return lines of cells as text with right-aligned columns."""
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     return "\n".join("  ".join(cell.rjust(w) for cell, w in zip(line, widths, strict=True)) for line in lines)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import glob
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -32,6 +32,8 @@ examples:
   python -m hypermap_lite plot hypervolume outputs/with_prior outputs/no_prior --labels "operator prior,no prior"
   python -m hypermap_lite plot prior my_scenario.json --parameters speed,stiffness
   python -m hypermap_lite plot hypervolume "operator prior=outputs/op_*" "no prior=outputs/no_*" --output figure.pdf
+  python -m hypermap_lite plot attainment outputs/studies/peg_insertion
+  python -m hypermap_lite plot prior example_scenarios/robot/peg_insertion/operator_prior.json --parameters Force,Radius
 
 Each picture becomes a PNG and a PDF (or the one that --output names), in the run folder if there is one run and
 in the working directory if there are several. The files written are listed on stdout.
@@ -52,7 +54,8 @@ def add_parser(subparsers: Subparsers) -> None:
         "runs",
         metavar="RUN",
         nargs="+",
-        help="run folder or its history.csv; 'LABEL=PATTERN' makes all folders that match repetitions of one label",
+        help="run folder or its history.csv, or the folder of a study; 'LABEL=PATTERN' makes all folders that match "
+        "repetitions of one label",
     )
     parser.add_argument("--labels", metavar="A,B", help="names for the legend, one per RUN, separated by commas")
     parser.add_argument("--output", "-o", metavar="FILE", help="FILE.png, FILE.pdf, or FILE without ending for both")
@@ -106,7 +109,8 @@ def expand_runs(arguments: Sequence[str], labels: Sequence[str] | None) -> tuple
     Parameters
     ----------
     arguments
-        Folders, glob patterns, or either after a label and an equals sign.
+        Folders, glob patterns, or either after a label and an equals sign. The folder of a study stands for its
+        finished runs under the labels of their variants.
     labels
         From ``--labels``, one per argument.
 
@@ -128,9 +132,10 @@ def expand_runs(arguments: Sequence[str], labels: Sequence[str] | None) -> tuple
     names: list[str | None] = []
     for i, argument in enumerate(arguments):
         label, pattern = _split_label(argument)
-        found = _matches(pattern)
-        folders += found
-        names += [labels[i].strip() if labels is not None else label] * len(found)
+        label = labels[i].strip() if labels is not None else label
+        for own, found in _runs_in(_matches(pattern)):
+            folders.append(found)
+            names.append(own if label is None else label)
     if all(name is None for name in names):
         return folders, None
     return folders, [str(folder) if name is None else name for folder, name in zip(folders, names, strict=True)]
@@ -162,6 +167,14 @@ def _split_label(argument: str) -> tuple[str | None, str]:
         label, _, pattern = argument.partition("=")
         return label.strip(), pattern
     return None, argument
+
+
+def _runs_in(folders: Sequence[Path]) -> Iterator[tuple[str | None, Path]]:
+    """Yield the run folders among some folders, and those in the studies among them with their labels."""
+    from hypermap_lite.study.folder import is_study, labelled_runs
+
+    for folder in folders:
+        yield from labelled_runs(folder) if is_study(folder) else [(None, folder)]
 
 
 def _matches(pattern: str) -> list[Path]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.scenario.schemas import (
     KIND_KEYS,
+    ROOT,
     Schema,
     all_properties,
     allows_any_key,
@@ -16,6 +17,7 @@ from hypermap_lite.scenario.schemas import (
     items_schema,
     kind_key,
     kind_of,
+    load_schemas,
     properties_of,
     resolve,
     root_schema,
@@ -40,21 +42,21 @@ NAMES = {
 }
 
 
-def check_document(document: Mapping[str, Any]) -> None:
-    """Raise a `ScenarioError` at the most telling violation of the schemas.
+def check_document(document: Mapping[str, Any], schema: str = ROOT) -> None:
+    """Raise a `ScenarioError` at the most telling violation of the schemas, those of a scenario unless told otherwise.
 
     An unknown kind comes first, since a section's other keys follow from it; then unknown keys, since one of them often
     explains a missing one; then the rest in the order of the file.
     """
     violations = [
         v
-        for v in validator().iter_errors(document)
+        for v in validator(schema).iter_errors(document)
         if v.validator not in ("additionalProperties", "unevaluatedProperties")
     ]
     for violation in violations:
         if violation.validator == "enum" and violation.absolute_path[-1] in KIND_KEYS:
             raise translate(violation)
-    for unknown in unknown_keys(root_schema(), document):
+    for unknown in unknown_keys(load_schemas()[schema], document):
         raise unknown
     if violations:
         raise translate(min(violations, key=lambda v: v.validator == "required"))

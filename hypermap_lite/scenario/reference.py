@@ -11,7 +11,15 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from hypermap_lite.scenario.messages import describe
-from hypermap_lite.scenario.schemas import Schema, allows_bare_string, kind_key, load_schemas, resolve, root_schema
+from hypermap_lite.scenario.schemas import (
+    Schema,
+    allows_bare_string,
+    kind_key,
+    load_schemas,
+    resolve,
+    root_schema,
+    study_schema,
+)
 
 COMMAND: Final = "python -m hypermap_lite.scenario.reference > docs/scenario.md"
 """What renews the page."""
@@ -39,6 +47,9 @@ evaluator keeps `replicates` and forgets `function`.
 **`--set`.** On the command line, `--set budget.evaluations=30` changes one value on top of the file. The value is JSON,
 or else a string; list items go by number: `--set objectives.0.goal=maximize`.
 
+**Studies.** Another kind of file, a [study](#study), names scenarios to be compared; `python -m hypermap_lite study
+FILE` runs them.
+
 **Trust.** A scenario can name any Python function or program to call: run only those you trust.
 """
 
@@ -46,13 +57,16 @@ or else a string; list items go by number: `--set objectives.0.goal=maximize`.
 def render() -> str:
     """Return the reference as Markdown."""
     parts = [INTRODUCTION.format(command=COMMAND), *_section("scenario", root_schema(), "##")]
-    for name, schema in _sections():
+    for name, schema in _sections(root_schema()):
         parts += _section(name, schema, "##" if name in root_schema()["properties"] else "###")
+    parts += _section("study", study_schema(), "##")
+    for name, schema in _sections(study_schema()):
+        parts += _section(name, schema, "###")
     return "\n".join(parts).rstrip() + "\n"
 
 
-def _sections() -> Iterator[tuple[str, Schema]]:
-    """Yield the sections in the order in which the schemas first refer to them, depth first."""
+def _sections(root: Schema) -> Iterator[tuple[str, Schema]]:
+    """Yield the sections of a document in the order in which the schemas first refer to them, depth first."""
     seen: set[str] = set()
 
     def visit(schema: Any) -> Iterator[tuple[str, Schema]]:
@@ -67,7 +81,7 @@ def _sections() -> Iterator[tuple[str, Schema]]:
             if isinstance(child, Mapping | list):
                 yield from visit(child)
 
-    yield from visit(root_schema())
+    yield from visit(root)
 
 
 def _section(name: str, schema: Schema, level: str) -> Iterator[str]:

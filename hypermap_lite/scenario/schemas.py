@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 Schema: TypeAlias = Mapping[str, Any]
 
 ROOT = "scenario.schema.json"
+STUDY = "study.schema.json"
 KIND_KEYS = ("type", "method", "parameter_type")
 
 
@@ -34,15 +35,20 @@ def root_schema() -> Schema:
     return load_schemas()[ROOT]
 
 
+def study_schema() -> Schema:
+    """Return the schema of a study's file."""
+    return load_schemas()[STUDY]
+
+
 @cache
-def validator() -> Draft202012Validator:
-    """Return a validator of whole scenarios that needs no network."""
+def validator(file: str = ROOT) -> Draft202012Validator:
+    """Return a validator of whole scenarios, or of the documents of another schema, that needs no network."""
     from jsonschema import Draft202012Validator
     from referencing import Registry, Resource
 
     contents = [Resource.from_contents(schema) for schema in load_schemas().values()]
     registry: Registry[Any] = Registry().with_resources([(str(c.id()), c) for c in contents])
-    return Draft202012Validator(root_schema(), registry=registry)
+    return Draft202012Validator(load_schemas()[file], registry=registry)
 
 
 def resolve(schema: Schema) -> Schema:
