@@ -3,6 +3,7 @@
 ====================  ==============================================================================================
 ``study.json``        the study as it was run, with the versions in use
 ``summary.csv``       a row per run and evaluation: hypervolume, best values, extra numbers so far
+``averages.csv``      a row per variant and evaluation: mean over the runs, and its standard error
 ``comparison.csv``    a row per variant: final values, and how they compare with the baseline
 ``union_front.csv``   the non-dominated evaluations of all runs together
 ====================  ==============================================================================================
@@ -15,11 +16,13 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from hypermap_lite.history.csv_format import format_record
 from hypermap_lite.history.files import make_folder, write_atomically
 from hypermap_lite.history.scenario_record import installed_versions
 from hypermap_lite.study.specification import Study
-from hypermap_lite.study.statistics import Interval
+from hypermap_lite.study.statistics import Interval, mean_and_standard_error
 from hypermap_lite.study.summary import Summary
 
 
@@ -36,6 +39,7 @@ def write_tables(summary: Summary) -> list[Path]:
     write_atomically(folder / "study.json", _as_json(summary.study))
     tables = {
         "summary.csv": _summary_rows(summary),
+        "averages.csv": _average_rows(summary),
         "comparison.csv": _comparison_rows(summary),
         "union_front.csv": _front_rows(summary),
     }
@@ -62,6 +66,20 @@ def _summary_rows(summary: Summary) -> Iterator[list[object]]:
                 volume = [score, summary.share(score)] if summary.reference_point else []
                 extra = [float(values[i]) for values in r.metrics.values()]
                 yield [comparison.variant.name, r.seed, i + 1, r.run.states[i], *volume, *r.best[i].tolist(), *extra]
+
+
+def _average_rows(summary: Summary) -> Iterator[list[object]]:
+    study = summary.study
+    score = "hypervolume" if summary.reference_point else f"best_{study.objectives[0].name}"
+    sign = 1.0 if summary.reference_point else -study.objectives[0].sign
+    share = ["hypervolume_share", "hypervolume_share_se"] if summary.reference_point else []
+    yield ["variant", "evaluation", "runs", score, f"{score}_se", *share]
+    for c in summary.comparisons:
+        scores = np.array([r.score[: summary.n_evaluations] for r in c.repetitions])
+        for i, column in enumerate(scores.T):
+            mean, error = mean_and_standard_error(column)
+            shares = [summary.share(mean), summary.share(error)] if summary.reference_point else []
+            yield [c.variant.name, i + 1, len(scores), sign * mean, error, *shares]
 
 
 def _comparison_rows(summary: Summary) -> Iterator[list[object]]:

@@ -129,7 +129,9 @@ def test_help_says_where_everything_is_and_how_to_go_on(capsys):
     text = " ".join(capsys.readouterr().out.split())
     options = ("--quick", "--workers", "--repetitions", "--only", "--output-dir", "--set", "--summarize", "--no-plot")
     assert [option for option in options if option not in text] == []
-    assert [name for name in ("summary.csv", "comparison.csv", "union_front.csv") if name not in text] == []
+    assert [
+        name for name in ("summary.csv", "averages.csv", "comparison.csv", "union_front.csv") if name not in text
+    ] == []
     assert "the same command goes on after any stop" in text
     assert text.count("python -m hypermap_lite study ") >= 2
 

@@ -82,6 +82,19 @@ def test_summary_has_the_course_of_every_run(study):
     assert [row["state"] for row in rows[:3]] == ["completed", "failed", "completed"]
 
 
+def test_averages_are_over_the_runs_of_a_variant(study):
+    write_runs(study, **FOUND)
+    summarize(study)
+    rows = table(study.folder / "averages.csv")
+    assert [(row["variant"], row["evaluation"], row["runs"]) for row in rows] == [
+        (v, n, "2") for v in "ab" for n in "123"
+    ]
+    assert column(rows, "hypervolume") == [1, 2, 3.5, 1.5, 3, 5]
+    assert column(rows, "hypervolume_se") == pytest.approx([0, 1, 1.5, 0.5, 1, 1])
+    assert column(rows, "hypervolume_share") == pytest.approx([1 / 7, 2 / 7, 0.5, 1.5 / 7, 3 / 7, 5 / 7])
+    assert column(rows, "hypervolume_share_se") == pytest.approx([0, 1 / 7, 1.5 / 7, 0.5 / 7, 1 / 7, 1 / 7])
+
+
 def test_extra_numbers_are_added_up_over_the_calls_in_their_order(measured):
     summarize(measured)
     rows = table(measured.folder / "summary.csv")
@@ -269,7 +282,7 @@ def test_volumes_of_zero_have_no_share_and_no_ratio(study):
     assert (row["final_hypervolume"], row["final_share"], row["ratio"]) == ("0.0", "", "")
 
 
-@pytest.mark.parametrize("name", ["summary.csv", "comparison.csv", "union_front.csv", "study.json"])
+@pytest.mark.parametrize("name", ["summary.csv", "averages.csv", "comparison.csv", "union_front.csv", "study.json"])
 def test_files_are_the_same_when_they_are_written_again(measured, name):
     summarize(measured)
     before = (measured.folder / name).read_bytes()
