@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 EPILOG: Final = """\
 The folder of the study keeps everything: the same command goes on after any stop, makes the runs that are missing, and
-writes summary.csv, averages.csv, comparison.csv, union_front.csv and the figures anew. The runs are run folders like any
-other, in runs/VARIANT/SEED. Results do not depend on the number of workers.
+writes summary.csv, averages.csv, comparison.csv, union_front.csv and the figures anew. The runs are run folders like
+any other, in runs/VARIANT/SEED. Results do not depend on the number of workers.
 
 examples:
   python -m hypermap_lite study study.json --quick
