@@ -35,8 +35,8 @@ examples:
   python -m hypermap_lite plot attainment outputs/studies/peg_insertion
   python -m hypermap_lite plot prior example_scenarios/robot/peg_insertion/operator_prior.json --parameters Force,Radius
 
-Each picture becomes a PNG and a PDF (or the one that --output names), in the run folder if there is one run and
-in the working directory if there are several. The files written are listed on stdout.
+Each picture becomes a PNG and a PDF (or the one that --output names), in the folder of the run or study if there is
+one and in the working directory if there are several. The files written are listed on stdout.
 """
 
 
@@ -92,7 +92,7 @@ def execute(args: argparse.Namespace) -> int:
     folders, labels = expand_runs(args.runs, args.labels.split(",") if args.labels is not None else None)
     files = plot_function(args.kind, parameters=names)(
         folders,
-        args.output,
+        args.output or _beside_study(args.runs, args.kind),
         labels=labels,
         title=args.title,
         reference_point=parse_reference_point(args.reference_point),
@@ -103,6 +103,13 @@ def execute(args: argparse.Namespace) -> int:
     return 0
 
 
+def _beside_study(arguments: Sequence[str], kind: str) -> Path | None:
+    """Return where a picture of one study goes: into its folder."""
+    from hypermap_lite.study.folder import is_study
+
+    return Path(arguments[0]) / kind if len(arguments) == 1 and is_study(Path(arguments[0])) else None
+
+
 def expand_runs(arguments: Sequence[str], labels: Sequence[str] | None) -> tuple[list[Path], list[str] | None]:
     """Resolve run arguments, of which some may be ``label=pattern``, to folders and their labels.
 
@@ -110,7 +117,7 @@ def expand_runs(arguments: Sequence[str], labels: Sequence[str] | None) -> tuple
     ----------
     arguments
         Folders, glob patterns, or either after a label and an equals sign. The folder of a study stands for its
-        finished runs under the labels of their variants.
+        finished runs under the labels of their variants, after the name of the study if there are other arguments.
     labels
         From ``--labels``, one per argument.
 
@@ -133,9 +140,10 @@ def expand_runs(arguments: Sequence[str], labels: Sequence[str] | None) -> tuple
     for i, argument in enumerate(arguments):
         label, pattern = _split_label(argument)
         label = labels[i].strip() if labels is not None else label
-        for own, found in _runs_in(_matches(pattern)):
+        matches = _matches(pattern)
+        for own, found in _runs_in(matches, has_others=len(arguments) > 1 or len(matches) > 1):
             folders.append(found)
-            names.append(own if label is None else label)
+            names.append(f"{label}: {own}" if own and label else own or label)
     if all(name is None for name in names):
         return folders, None
     return folders, [str(folder) if name is None else name for folder, name in zip(folders, names, strict=True)]
@@ -169,12 +177,16 @@ def _split_label(argument: str) -> tuple[str | None, str]:
     return None, argument
 
 
-def _runs_in(folders: Sequence[Path]) -> Iterator[tuple[str | None, Path]]:
+def _runs_in(folders: Sequence[Path], *, has_others: bool) -> Iterator[tuple[str | None, Path]]:
     """Yield the run folders among some folders, and those in the studies among them with their labels."""
     from hypermap_lite.study.folder import is_study, labelled_runs
 
     for folder in folders:
-        yield from labelled_runs(folder) if is_study(folder) else [(None, folder)]
+        if not is_study(folder):
+            yield None, folder
+            continue
+        for label, run in labelled_runs(folder):
+            yield f"{folder.name}: {label}" if has_others else label, run
 
 
 def _matches(pattern: str) -> list[Path]:

@@ -43,13 +43,17 @@ def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> None:
         formatter_class=RawDescriptionHelpFormatter,
     )
     parser.add_argument("study", metavar="STUDY", help="study file (JSON)")
-    parser.add_argument("--quick", action="store_true", help="the quick form: fewer repetitions, a folder of its own")
+    parser.add_argument("--quick", action="store_true", help="the study's quick form, in a folder of its own")
     parser.add_argument(
         "--workers", type=int, metavar="N", help="runs at the same time (default: the number of processor cores)"
     )
     parser.add_argument("--repetitions", type=int, metavar="N", help="runs per variant, instead of the study's")
     parser.add_argument(
-        "--only", action="append", default=[], metavar="VARIANT", help="run this one and the baseline only; repeatable"
+        "--only",
+        action="append",
+        default=[],
+        metavar="VARIANT",
+        help="this one and the baseline alone, in runs and tables; repeatable",
     )
     parser.add_argument("--output-dir", metavar="DIR", help="folder of the study (default: the study's)")
     parser.add_argument(
@@ -148,6 +152,7 @@ def command_to_go_on(args: Namespace) -> str:
         words += ["--only", name]
     for change in args.overrides:
         words += ["--set", change]
+    words += ["--no-plot"] if args.no_plot else []
     return shlex.join(words)
 
 

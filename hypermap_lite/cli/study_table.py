@@ -30,6 +30,12 @@ def describe(summary: Summary) -> str:
         whole = summary.whole_volume
         meaning = "is share 1" if whole > 0 else "in all: nothing found beats the reference point in every objective"
         lines.append(f"hypervolume {number(whole)} {meaning} ({reference})")
+    failed = [f"{c.n_without_result} of {c.variant.label}" for c in summary.comparisons if c.n_without_result]
+    if failed:
+        lines.append(f"evaluations without a usable result: {', '.join(failed)}")
+    longer = [v.label for v in study.variants if v.n_evaluations > summary.n_evaluations]
+    if longer:
+        lines.append(f"only the first {summary.n_evaluations} evaluations of {', '.join(longer)} are compared")
     if summary.n_missing:
         runs = "1 run is" if summary.n_missing == 1 else f"{summary.n_missing} runs are"
         lines.append(f"{runs} not finished and not counted")

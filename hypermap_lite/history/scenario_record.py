@@ -28,6 +28,7 @@ MAY_DIFFER: Final = (
     "$.description",
     "$.input_parameters.*.description",
     "$.objectives[*].description",
+    "$.objectives[*].reference_point",
     "$.priors[*].file",
 )
 """Parts of a scenario that may change between a run and its continuation: they do not change what a row means.
@@ -48,7 +49,12 @@ SHOWN_CHARACTERS: Final = 60
 """Of a value; of a longer one, such as the points of a prior, only the surroundings of the difference."""
 
 
-def check_scenario(path: Path, canonical: Mapping[str, Any], function: str | None = None) -> None:
+ADVICE: Final = "Choose another folder with --output-dir, or --fresh to start anew (the old folder is kept aside)."
+
+
+def check_scenario(
+    path: Path, canonical: Mapping[str, Any], function: str | None = None, *, advice: str = ADVICE
+) -> None:
     """Make sure that a run folder's ``scenario.json``, if there is one, is the scenario about to be run.
 
     A library of another version is only warned of, and so is another `function` passed in place of the evaluator.
@@ -72,8 +78,7 @@ def check_scenario(path: Path, canonical: Mapping[str, Any], function: str | Non
         if len(differences) > len(shown):
             shown.append(f"  ... and {len(differences) - len(shown)} more")
         raise RunFolderError(
-            f"{path.parent}: holds the results of another scenario\n" + "\n".join(shown) + "\n"
-            "  hint: Choose another folder with --output-dir, or --fresh to start anew (the old folder is kept aside)."
+            f"{path.parent}: holds the results of another scenario\n" + "\n".join(shown) + f"\n  hint: {advice}"
         )
     _compare_versions(versions if isinstance(versions, dict) else {}, versions_in_use(function))
 

@@ -10,6 +10,7 @@ from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.scenario.schemas import (
     KIND_KEYS,
     ROOT,
+    STUDY,
     Schema,
     all_properties,
     allows_any_key,
@@ -48,6 +49,7 @@ def check_document(document: Mapping[str, Any], schema: str = ROOT) -> None:
     An unknown kind comes first, since a section's other keys follow from it; then unknown keys, since one of them often
     explains a missing one; then the rest in the order of the file.
     """
+    _check_kind(document, schema)
     violations = [
         v
         for v in validator(schema).iter_errors(document)
@@ -60,6 +62,17 @@ def check_document(document: Mapping[str, Any], schema: str = ROOT) -> None:
         raise unknown
     if violations:
         raise translate(min(violations, key=lambda v: v.validator == "required"))
+
+
+def _check_kind(document: Mapping[str, Any], schema: str) -> None:
+    """Raise a `ScenarioError` if a study is taken for a scenario, or the other way round."""
+    is_study = "variants" in document and "input_parameters" not in document
+    if schema == ROOT and is_study:
+        hint = "Run it by: python -m hypermap_lite study FILE"
+        raise ScenarioError("$", "this is a study, not a scenario", allowed="a scenario", hint=hint)
+    if schema == STUDY and "variants" not in document and {"input_parameters", "extends"} & set(document):
+        hint = "Run it by: python -m hypermap_lite FILE, or name it in a study's variants."
+        raise ScenarioError("$", "this is a scenario, not a study", allowed="a study", hint=hint)
 
 
 def unknown_keys(schema: Schema, value: Any, keys: Keys = ()) -> Iterator[ScenarioError]:

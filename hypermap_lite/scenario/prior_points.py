@@ -204,7 +204,8 @@ def _values(table: Table, rows: Sequence[int], parameters: Mapping[str, Mapping[
         problem = f"{n_bad} of {len(rows)} rows of {table.name} {what}: {listed}"
         first = next(iter(counts))
         values = enumerate_names([str(value) for value in parameters[first]["values"]], 8)
-        allowed = f"for '{first}': {values if _is_listed(parameters[first]) else values.replace(', ', ' to ')}"
+        whole = "whole numbers, " * (parameters[first]["parameter_type"] == "integer")
+        allowed = f"for '{first}': {whole}{values if _is_listed(parameters[first]) else values.replace(', ', ' to ')}"
         raise ScenarioError("$", problem, allowed=allowed, hint="Leave these rows out, or widen the parameter.")
     return {name: [value for value in column if value is not None] for name, column in columns.items()}
 

@@ -15,7 +15,7 @@ def is_study(folder: Path) -> bool:
 
 
 def labelled_runs(folder: Path) -> list[tuple[str, Path]]:
-    """Return label and folder of each finished run of a study, variant by variant.
+    """Return label and folder of each finished run of a study, as it was last summarized, variant by variant.
 
     Raises
     ------
@@ -24,12 +24,14 @@ def labelled_runs(folder: Path) -> list[tuple[str, Path]]:
     """
     file = folder / "study.json"
     try:
-        variants = json.loads(file.read_text(encoding="utf-8"))["variants"]
+        study = json.loads(file.read_text(encoding="utf-8"))
+        variants, first = study["variants"], study["first_seed"]
+        seeds = range(first, first + study["repetitions"])
         found = [
             (entry.get("label") or name.replace("_", " "), run)
             for name, entry in variants.items()
             for run in sorted((folder / "runs" / name).glob("[0-9]*"), key=lambda run: int(run.name))
-            if is_finished(run, entry["evaluations"])
+            if int(run.name) in seeds and is_finished(run, entry["evaluations"])
         ]
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
         raise RunFolderError(f"{file}: cannot be read as a study: {error!r}") from error

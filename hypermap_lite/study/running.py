@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
 from hypermap_lite.evaluation.worker_process import THREAD_VARIABLES
-from hypermap_lite.history.scenario_record import check_scenario
+from hypermap_lite.history.lock import FolderLock
 from hypermap_lite.study.folder import count_rows, is_finished
 from hypermap_lite.study.progress import Failure, Progress, StudyObserver
 from hypermap_lite.study.specification import Run, Study
@@ -130,7 +130,7 @@ def run_study(
     ScenarioError
         If a variant cannot be run as written.
     RunFolderError
-        If a run folder holds the results of another scenario.
+        If a run folder holds the results of another scenario, or another process works on this study.
     """
     observer = observer or StudyObserver()
     for variant in study.variants:
@@ -144,7 +144,8 @@ def run_study(
     observer.on_start(progress)
     if not missing:
         return []
-    return _Session(missing, progress, workers, observer, should_stop).work()
+    with FolderLock(study.folder):
+        return _Session(missing, progress, workers, observer, should_stop).work()
 
 
 def _note_finished(run: Run, progress: Progress) -> bool:
@@ -155,7 +156,7 @@ def _note_finished(run: Run, progress: Progress) -> bool:
     RunFolderError
         If it holds the results of another scenario.
     """
-    check_scenario(run.folder / "scenario.json", run.canonical)
+    run.check_folder()
     n_done = min(count_rows(run.folder), run.variant.n_evaluations)
     if n_done:
         progress.done[run] = n_done

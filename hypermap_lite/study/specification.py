@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from hypermap_lite.assembly import build_space, validate
 from hypermap_lite.errors import ScenarioError, nearest
+from hypermap_lite.history.scenario_record import check_scenario
 from hypermap_lite.objectives import Objective
 from hypermap_lite.scenario import Scenario, load_scenario
 from hypermap_lite.scenario.defaults import fill
@@ -79,6 +80,17 @@ class Run:
         """The effective scenario as JSON."""
         scenario = self.variant.effective.canonical
         return {**scenario, "seed": self.seed, "output": {**scenario["output"], "directory": str(self.folder)}}
+
+    def check_folder(self) -> None:
+        """Make sure that the folder, if there is one, is that of this run.
+
+        Raises
+        ------
+        RunFolderError
+            If it holds the results of another scenario.
+        """
+        advice = "Choose another folder with --output-dir, or move this one away."
+        check_scenario(self.folder / "scenario.json", self.canonical, advice=advice)
 
     def __str__(self) -> str:
         return f"{self.variant.name}/{self.folder.name}"
@@ -165,6 +177,9 @@ def load_study(
     except ScenarioError as error:
         raise error.within(str(path)) from None
     front = complete["reference_front"]
+    if front is not None and not _beside(path.parent, front).is_file():
+        allowed = "a CSV file, relative to the folder of this file"
+        raise ScenarioError("$.reference_front", f'there is no file "{front}"', allowed=allowed, file=str(path))
     return Study(
         name=complete["name"],
         description=complete["description"],
@@ -182,7 +197,8 @@ def load_study(
 def _quick_form(document: Mapping[str, Any]) -> dict[str, Any]:
     """Return the document of a study's quick form: fewer repetitions, a folder of its own; `_variant` does the rest."""
     folder = None if document["output"] is None else f"{document['output'].rstrip('/')}_quick"
-    name, repetitions = f"{document['name']}_quick", document["quick"]["repetitions"]
+    repetitions = min(document["quick"]["repetitions"], document["repetitions"])
+    name = f"{document['name']}_quick"
     return {**document, "name": name, "repetitions": repetitions, "output": folder}
 
 

@@ -10,9 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from hypermap_lite.errors import RunFolderError, ScenarioError
+from hypermap_lite.errors import RunFolderError, ScenarioError, nearest
 from hypermap_lite.history.csv_format import read_records
-from hypermap_lite.history.scenario_record import check_scenario
 from hypermap_lite.objectives import to_minimization
 from hypermap_lite.pareto import hypervolume, hypervolume_trace, non_dominated
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
@@ -78,6 +77,9 @@ class Comparison:
     is_paired: bool
     """Whether its repetitions begin with the same configurations as those of the baseline."""
 
+    n_without_result: int
+    """Evaluations of all its runs that gave no usable result."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Summary:
@@ -123,13 +125,14 @@ def summarize(study: Study) -> Summary:
     if not runs[study.baseline]:
         raise RunFolderError(f"{study.folder}: no run of the baseline '{study.baseline.name}' is finished yet")
     is_multi = len(study.objectives) > 1
-    reference = common_reference_point(everything) if is_multi else None
+    n = min(len(run.rows) for run in everything)
+    stated = {o.name: o.reference_point for o in study.objectives if o.reference_point is not None}
+    reference = common_reference_point(everything, stated) if is_multi else None
     corner = None if reference is None else to_minimization(study.objectives, reference.values)
-    union = _union_front(everything)
+    union = _union_front(everything, n)
     whole = math.nan if corner is None else hypervolume(_reference_front(study, union), corner)
     repetitions = {variant: tuple(_repetition(study, run, corner) for run in group) for variant, group in runs.items()}
     baseline = repetitions[study.baseline]
-    n = min(len(r.score) for group in repetitions.values() for r in group)
     return Summary(
         study=study,
         comparisons=tuple(_compare(study, v, group, baseline, n) for v, group in repetitions.items() if group),
@@ -145,7 +148,7 @@ def _finished_runs(study: Study) -> dict[Variant, list[Run]]:
     """Read the runs that came to their end with a usable result, by variant, in the order of the seeds."""
     finished: dict[Variant, list[Run]] = {variant: [] for variant in study.variants}
     for planned in study.runs():
-        check_scenario(planned.folder / "scenario.json", planned.canonical)
+        planned.check_folder()
         if is_finished(planned.folder, planned.variant.n_evaluations):
             finished[planned.variant].append(load_run(planned.folder, label=planned.variant.label))
     return finished
@@ -177,8 +180,8 @@ def _metric(run: Run, name: str, aggregate: Callable[[FloatArray], FloatArray]) 
     records = read_records(file)
     header = records[0] if records else []
     if name not in header:
-        known = ", ".join(header) or "none"
-        raise ScenarioError(f"$.metrics.{name}", f"{file} has no column '{name}'", allowed=known)
+        known, hint = ", ".join(header) or "none", nearest(name, header)
+        raise ScenarioError(f"$.metrics.{name}", f"{file} has no column '{name}'", allowed=known, hint=hint)
     trials, values = [], []
     for record in sorted(records[1:], key=lambda r: (int(r[0]), int(r[1]))):
         if text := record[header.index(name)]:
@@ -198,10 +201,11 @@ def _number(place: str, text: str, file: Path) -> float:
         raise ScenarioError(place, f"{file} has {text!r} in a column of numbers", allowed="numbers") from None
 
 
-def _union_front(runs: Sequence[Run]) -> list[tuple[Run, int]]:
-    """Return run and row of each evaluation that no evaluation of any run dominates, each point once."""
-    places = [(run, i) for run in runs for i in np.flatnonzero(run.is_front)]
-    Y = np.vstack([run.Y[run.is_front] for run in runs])
+def _union_front(runs: Sequence[Run], n: int) -> list[tuple[Run, int]]:
+    """Return run and row of each of the first n evaluations that none of any run dominates, each point once."""
+    fronts = [np.flatnonzero(non_dominated(run.Y[:n])) for run in runs]
+    places = [(run, int(i)) for run, front in zip(runs, fronts, strict=True) for i in front]
+    Y = np.vstack([run.Y[front] for run, front in zip(runs, fronts, strict=True)])
     _, first = np.unique(Y, axis=0, return_index=True)
     return [places[i] for i in first[non_dominated(Y[first])]]
 
@@ -214,7 +218,7 @@ def _reference_front(study: Study, union: Sequence[tuple[Run, int]]) -> FloatArr
     file, place = study.reference_front, "$.reference_front"
     records = read_records(file) if file.is_file() else []
     if len(records) < 2 or not set(names) <= set(records[0]):
-        problem = f"{file} is not there, or has no rows with columns {', '.join(names)}"
+        problem = f"{file} has no rows with columns {', '.join(names)}"
         raise ScenarioError(place, problem, allowed="a CSV with a column per objective")
     columns = [records[0].index(name) for name in names]
     values = np.array([[_number(place, record[j], file) for j in columns] for record in records[1:]])
@@ -242,6 +246,7 @@ def _compare(
         if is_baseline
         else {name: ratio_of_means(ends[name], theirs[name], is_paired=is_paired) for name in ends},
         is_paired=is_paired,
+        n_without_result=sum(int(np.count_nonzero(~r.run.is_completed[:n])) for r in group),
     )
 
 

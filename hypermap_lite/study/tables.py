@@ -85,7 +85,7 @@ def _average_rows(summary: Summary) -> Iterator[list[object]]:
 def _comparison_rows(summary: Summary) -> Iterator[list[object]]:
     study = summary.study
     score = "hypervolume" if summary.reference_point else f"best_{study.objectives[0].name}"
-    header = ["variant", "label", "runs", "evaluations", f"final_{score}", f"final_{score}_se"]
+    header = ["variant", "label", "runs", "evaluations", "without_result", f"final_{score}", f"final_{score}_se"]
     header += ["final_share", "ratio", "ratio_low", "ratio_high"] if summary.reference_point else []
     header += ["evaluations_to_baseline", "evaluations_to_baseline_low", "evaluations_to_baseline_high", "paired"]
     for name, how in study.metrics.items():
@@ -96,7 +96,7 @@ def _comparison_rows(summary: Summary) -> Iterator[list[object]]:
     for c in summary.comparisons:
         mean, error = c.final
         row: list[object] = [c.variant.name, c.variant.label, len(c.repetitions), summary.n_evaluations]
-        row += [sign * mean, error]
+        row += [c.n_without_result, sign * mean, error]
         row += [summary.share(mean), *_cells(c.ratio)] if summary.reference_point else []
         row += [*_cells(c.evaluations), str(c.is_paired).lower()]
         for name in study.metrics:

@@ -41,6 +41,9 @@ def file(tmp_path):
     return path
 
 
+NAMES = ("summary", "averages", "comparison", "union_front")
+
+
 def test_table_compares_the_variants_and_says_what_it_is_measured_by(file, capsys):
     assert study(file, "--summarize") == 0
     lines = capsys.readouterr().out.splitlines()
@@ -49,7 +52,7 @@ def test_table_compares_the_variants_and_says_what_it_is_measured_by(file, capsy
     assert words(lines[3]) == "a 2 3.5 ± 1.5 0.583 3 (3 to 3)"
     assert words(lines[4]) == "b 2 4 ± 0 0.667 1.14 (0.80 to 2.00) 2 (2 to never)"
     assert lines[6] == "hypervolume 6 is share 1 (reference point: f 4, g 4)"
-    assert lines[7:] == [f"{file.parent}/out/{name}.csv" for name in ("summary", "comparison", "union_front")]
+    assert lines[7:] == [f"{file.parent}/out/{name}.csv" for name in NAMES]
 
 
 def test_summary_of_half_a_study_says_what_is_missing_and_runs_nothing(file, capsys):
@@ -64,9 +67,10 @@ def test_summary_of_a_study_that_has_not_begun_is_an_error(tmp_path, capsys):
 
 
 def test_mistake_found_at_the_end_is_named_with_file_and_place(file, capsys, tmp_path):
+    (tmp_path / "front.csv").write_text("f,h\n")
     write_study(tmp_path, scenario=SCENARIO, reference_front="front.csv")
     assert study(file, "--summarize") == 2
-    assert capsys.readouterr().err.startswith(f"error: {file}: $.reference_front: {tmp_path}/front.csv is not there")
+    assert capsys.readouterr().err.startswith(f"error: {file}: $.reference_front: {tmp_path}/front.csv has no rows")
 
 
 def test_pictures_are_drawn_and_listed(file, capsys):
@@ -204,8 +208,18 @@ def test_interrupt_ends_in_order_and_tells_the_command_that_goes_on(tmp_path, wa
     notice, command = err.splitlines()[-2:]
     assert notice == f"stopped; all evaluations that were finished are saved in {tmp_path}/out. To go on:"
     arguments = shlex.split(command)
-    assert arguments == ["python", "-m", "hypermap_lite", "study", f"{tmp_path}/study.json", "--set", "description=a b"]
-    assert main([*arguments[3:], "--no-plot"]) == 0
+    words = [
+        "python",
+        "-m",
+        "hypermap_lite",
+        "study",
+        f"{tmp_path}/study.json",
+        "--set",
+        "description=a b",
+        "--no-plot",
+    ]
+    assert arguments == words
+    assert main(arguments[3:]) == 0
     assert "demo: 4 evaluations per run" in capsys.readouterr().out
 
 

@@ -50,9 +50,19 @@ def test_absent_record_passes(tmp_path):
         {**SCENARIO, "description": "Now with a word of explanation."},
         {**SCENARIO, "application_name": "other"},
         {**SCENARIO, "objectives": [{"name": "f", "description": "in mm"}, {"name": "g", "reference_point": 1}]},
+        {**SCENARIO, "objectives": [SCENARIO["objectives"][0], {"name": "g", "reference_point": 7}]},
         changed("input_parameters", x={**SCENARIO["input_parameters"]["x"], "description": "in N"}),
     ],
-    ids=["budget", "evaluator", "output", "description", "name", "of an objective", "of a parameter"],
+    ids=[
+        "budget",
+        "evaluator",
+        "output",
+        "description",
+        "name",
+        "of an objective",
+        "reference point",
+        "of a parameter",
+    ],
 )
 def test_change_that_leaves_the_rows_valid_passes(tmp_path, scenario):
     write_scenario(tmp_path / "scenario.json", SCENARIO)
@@ -92,8 +102,9 @@ def test_damaged_record_is_an_error(tmp_path, content, message):
 
 
 def test_difference_in_a_list_of_objects_is_named_by_its_own_place():
-    other = {**SCENARIO, "objectives": [SCENARIO["objectives"][0], {"name": "g", "reference_point": 2}]}
-    assert list(differing(SCENARIO, other)) == [("$.objectives[1].reference_point", "1", "2")]
+    other = {**SCENARIO, "objectives": [SCENARIO["objectives"][0], {**SCENARIO["objectives"][1], "goal": "maximize"}]}
+    ((place, *_),) = differing(SCENARIO, other)
+    assert place == "$.objectives[1].goal"
 
 
 def test_parameter_called_description_is_no_description():

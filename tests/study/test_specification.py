@@ -61,8 +61,8 @@ def test_narrower_changes_win(tmp_path, without, is_quick, overrides, budget):
 
 def test_quick_form_has_a_name_a_folder_and_repetitions_of_its_own(tmp_path):
     study = load_study(write_study(tmp_path, output="there/"), is_quick=True)
-    assert (study.name, str(study.folder), study.repetitions) == ("demo_quick", "there_quick", 3)
-    assert study.variants[0].effective.budget.evaluations == 25
+    assert (study.name, str(study.folder), study.repetitions) == ("demo_quick", "there_quick", 2)  # of 2, not 3
+    assert load_study(write_study(tmp_path, repetitions=9), is_quick=True).repetitions == 3
     file = write_study(tmp_path, output=None, quick={"repetitions": 2})
     assert str(load_study(file, is_quick=True).folder) == "outputs/studies/demo_quick"
     assert load_study(file, is_quick=True, repetitions=7, output="x").canonical["output"] == "x"

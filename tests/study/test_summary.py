@@ -8,7 +8,7 @@ import pytest
 from hypermap_lite.errors import RunFolderError, ScenarioError
 from hypermap_lite.study import load_study, write_tables
 from hypermap_lite.study import summarize as compare
-from tests.study.studies import A, loaded, table, write_runs, write_study
+from tests.study.studies import TWO, A, loaded, table, write_runs, write_study
 
 
 def summarize(study):
@@ -114,6 +114,7 @@ def test_comparison_by_hand(measured):
         "label": "a",
         "runs": "2",
         "evaluations": "3",
+        "without_result": "1",
         "paired": "true",
         "final_hypervolume": "3.5",
         "final_share": "0.5",
@@ -258,20 +259,37 @@ def test_shares_are_of_the_reference_front_if_there_is_one(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (None, "front.csv is not there, or has no rows with columns f, g"),
         ("f,h\n1,2\n", "has no rows with columns f, g"),
         ("f,g\n", "has no rows with columns f, g"),
         ("f,g\n1,\n", "front.csv has '' in a column of numbers"),
     ],
-    ids=["no file", "other columns", "no rows", "empty cell"],
+    ids=["other columns", "no rows", "empty cell"],
 )
 def test_reference_front_that_is_none_is_an_error(tmp_path, text, message):
-    if text is not None:
-        (tmp_path / "front.csv").write_text(text)
+    (tmp_path / "front.csv").write_text(text)
     study = loaded(tmp_path, scenario=SCENARIO, reference_front="front.csv")
     write_runs(study, **FOUND)
     with pytest.raises(ScenarioError, match=rf"\$.reference_front: .*{message}"):
         summarize(study)
+
+
+def test_reference_front_that_is_missing_is_told_at_once(tmp_path):
+    with pytest.raises(ScenarioError, match=r'reference_front: there is no file "front.csv"'):
+        loaded(tmp_path, reference_front="front.csv")
+
+
+def test_reference_point_that_is_set_afterwards_counts(tmp_path, study):
+    write_runs(study, **FOUND)
+    moved = load_study(tmp_path / "study.json", overrides=["objectives.0.reference_point=3"])
+    assert summarize(moved).reference_point.values.tolist() == [3, summarize(study).reference_point.values[1]]
+
+
+def test_evaluations_beyond_those_compared_are_left_out(tmp_path):
+    longer = {**TWO, "b": {**TWO["b"], "set": {**TWO["b"].get("set", {}), "budget.evaluations": 4}}}
+    study = loaded(tmp_path, scenario=SCENARIO, variants=longer)
+    write_runs(study, a=FOUND["a"], b=[[*Y, [0, 0]] for Y in FOUND["b"]])
+    summary = summarize(study)
+    assert (summary.n_evaluations, summary.whole_volume) == (3, 7)
 
 
 def test_volumes_of_zero_have_no_share_and_no_ratio(study):
