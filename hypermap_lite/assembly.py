@@ -198,6 +198,7 @@ def build_method(scenario: Scenario) -> Method:
         prior_weighting=None if weighting is None else build_member(PRIOR_WEIGHTINGS, weighting, "prior weighting"),
         maximizer=build_member(MAXIMIZERS, scenario.maximizer, "maximizer"),
         fallback=PriorSampling(),
+        epsilon=scenario.optimizer.options.get("epsilon") or 0.0,
     )
 
 

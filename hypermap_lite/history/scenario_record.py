@@ -6,7 +6,7 @@ import json
 import logging
 import platform
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
 from typing import Any, Final
@@ -28,7 +28,6 @@ MAY_DIFFER: Final = (
     "$.description",
     "$.input_parameters.*.description",
     "$.objectives[*].description",
-    "$.objectives[*].reference_point",
     "$.priors[*].file",
 )
 """Parts of a scenario that may change between a run and its continuation: they do not change what a row means.
@@ -37,7 +36,15 @@ A star stands for one key or index. The name matters only where it names the fol
 The file of a prior has been read: its points count.
 """
 
-_FREE: Final = re.compile("|".join(re.escape(place).replace(r"\*", r"[^.\[\]]+") for place in MAY_DIFFER))
+
+def _pattern(places: Iterable[str]) -> re.Pattern[str]:
+    return re.compile("|".join(re.escape(place).replace(r"\*", r"[^.\[\]]+") for place in places))
+
+
+_FREE: Final = _pattern(MAY_DIFFER)
+
+MEASURES: Final = ("$.objectives[*].reference_point",)
+"""Parts of a scenario that decide how a finished run is measured; in a running one they also guide the search."""
 
 LIBRARIES: Final = ("numpy", "scipy", "scikit-learn", "moocore")
 """Packages whose version can change the last bits of a suggestion."""
@@ -53,11 +60,17 @@ ADVICE: Final = "Choose another folder with --output-dir, or --fresh to start an
 
 
 def check_scenario(
-    path: Path, canonical: Mapping[str, Any], function: str | None = None, *, advice: str = ADVICE
+    path: Path,
+    canonical: Mapping[str, Any],
+    function: str | None = None,
+    *,
+    is_finished: bool = False,
+    advice: str = ADVICE,
 ) -> None:
     """Make sure that a run folder's ``scenario.json``, if there is one, is the scenario about to be run.
 
-    A library of another version is only warned of, and so is another `function` passed in place of the evaluator.
+    If the run is finished, its `MEASURES` may differ too. A library of another version is only warned of, and so is
+    another `function` passed in place of the evaluator.
 
     Raises
     ------
@@ -68,7 +81,12 @@ def check_scenario(
         return
     recorded = _read(path)
     versions = recorded.pop("versions", None)
-    differences = list(differing(recorded, _plain(canonical)))
+    measures = _pattern(MEASURES)
+    differences = [
+        difference
+        for difference in differing(recorded, _plain(canonical))
+        if not (is_finished and measures.fullmatch(difference[0]))
+    ]
     if differences:
         shown = [
             f"  {place}: {old} there, {new} now"

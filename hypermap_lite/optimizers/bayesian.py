@@ -11,6 +11,7 @@ import numpy as np
 from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
 from hypermap_lite.acquisition.prior_weighted import PriorWeighted, PriorWeighting
 from hypermap_lite.design.base import InitialDesign
+from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, Maximizer
@@ -56,6 +57,14 @@ class Method:
     fallback: InitialDesign
     """Draws a point where there is nothing to model yet."""
 
+    epsilon: float = 0.0
+    """Probability that a suggestion is drawn uniformly instead: a way out of a misleading prior or model [1]_.
+
+    References
+    ----------
+    .. [1] Nardi, Koeplinger, Olukotun. Practical Design Space Exploration. MASCOTS 2019 (HyperMapper).
+    """
+
 
 class BayesianOptimizer(Optimizer):
     """Suggests the maximum of an acquisition function over a model of the completed evaluations.
@@ -98,14 +107,19 @@ class BayesianOptimizer(Optimizer):
     def _suggest(self, trial: int) -> Suggestion | None:
         if trial < len(self._initial):
             return self._initial.suggestion(trial)
+        if self._method.epsilon:
+            rng = generator(self._seed, Stream.EXPLORATION, trial)
+            if rng.random() < self._method.epsilon:
+                return self._drawn_by(RandomSampling(), trial, rng)
         rng = generator(self._seed, Stream.SUGGESTION, trial)
         if len(self.history.completed) < MIN_COMPLETED:
-            return self._without_model(trial, rng)
+            return self._drawn_by(self._method.fallback, trial, rng)
         return self._with_model(trial, rng)
 
-    def _without_model(self, trial: int, rng: Rng) -> Suggestion | None:
+    def _drawn_by(self, design: InitialDesign, trial: int, rng: Rng) -> Suggestion | None:
+        """Return a new point of a design instead of one by the model; None if there is none."""
         space, taken = self.history.space, self.taken_keys()
-        X = self._method.fallback.points(space, self._prior, len(taken) + 1, rng)
+        X = design.points(space, self._prior, len(taken) + 1, rng)
         new = X[space.unseen(X, taken)]
         if not len(new):
             return None

@@ -15,6 +15,7 @@ class Stream(IntEnum):
     DESIGN = 0
     SUGGESTION = 1
     EVALUATION = 2
+    EXPLORATION = 3
 
 
 def generator(seed: int, stream: Stream, *numbers: int) -> Rng:

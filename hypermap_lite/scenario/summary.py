@@ -96,6 +96,8 @@ def _method(scenario: Scenario) -> list[str]:
     if n < total:
         chosen = f"{_component(acquisition.function)} on a {_component(scenario.surrogate)}"
         lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
+    if epsilon := scenario.optimizer.options.get("epsilon"):
+        lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
     m = len(scenario.objectives)
     if m > 1:
         weights = f"{_component(acquisition.scalarization)} with weights from {_component(acquisition.weights)}"

@@ -18,6 +18,7 @@ from hypermap_lite.scenario.defaults import fill
 from hypermap_lite.scenario.messages import check_document, enumerate_names
 from hypermap_lite.scenario.reading import read_json
 from hypermap_lite.scenario.schemas import STUDY, study_schema
+from hypermap_lite.study.folder import is_finished
 
 OWN_KEYS: Final = {
     "seed": "See first_seed.",
@@ -90,7 +91,8 @@ class Run:
             If it holds the results of another scenario.
         """
         advice = "Choose another folder with --output-dir, or move this one away."
-        check_scenario(self.folder / "scenario.json", self.canonical, advice=advice)
+        ended = is_finished(self.folder, self.variant.n_evaluations)
+        check_scenario(self.folder / "scenario.json", self.canonical, is_finished=ended, advice=advice)
 
     def __str__(self) -> str:
         return f"{self.variant.name}/{self.folder.name}"

@@ -46,6 +46,29 @@ def test_every_member_of_every_family_drives_a_run(changes: dict) -> None:
     assert all(np.isfinite(e.suggestion.acquisition_value) for e in list(optimizer.history)[n_design:])
 
 
+def phases(optimizer) -> list[str]:
+    return [evaluation.suggestion.phase for evaluation in optimizer.history]
+
+
+def test_epsilon_is_the_share_of_uniform_draws_after_the_design() -> None:
+    changes = {"design_of_experiment": {"type": "sobol", "number_of_samples": 4}, "seed": 3}
+    always = run(scenario_of(**changes, optimizer={"epsilon": 1}), 12, batch=2)
+    assert phases(always) == ["design"] * 4 + ["random"] * 8
+    sometimes = run(scenario_of(**changes, optimizer={"epsilon": 0.4}), 24, batch=2)
+    assert 2 <= phases(sometimes).count("random") <= 14
+    assert len({str(c) for c in configurations(sometimes)}) == 24
+
+
+def test_epsilon_of_zero_is_the_run_without_it_and_draws_depend_on_the_trial_alone() -> None:
+    plain = run(scenario_of(), 9)
+    assert configurations(run(scenario_of(optimizer={"epsilon": 0}), 9)) == configurations(plain)
+    scenario = scenario_of(optimizer={"epsilon": 0.5})
+    whole = run(scenario, 12)
+    for stop in range(5, 12):
+        (suggestion,) = resumed(scenario, list(whole.history)[:stop]).ask()
+        assert suggestion.configuration == whole.history[stop].configuration
+
+
 def test_weight_samplings_are_covered_above() -> None:
     assert set(WEIGHTS) == {"dirichlet", "bounding_box"}
 
