@@ -22,7 +22,7 @@ def test_quick_study_runs_to_its_figures(file: Path, tmp_path: Path) -> None:
         rows = {row["variant"]: row for row in csv.DictReader(stream)}
     assert list(rows) == list(json.loads(file.read_text())["variants"])
     assert {(row["runs"], row["evaluations"]) for row in rows.values()} == {("3", "25")}
-    # what holds in every task, with these seeds: an operator's prior is worth something
-    assert float(rows["operator_prior"]["ratio"]) > 1.0
+    if "operator_prior" in rows:  # what holds in every task, with these seeds: it is worth something
+        assert float(rows["operator_prior"]["ratio"]) > 1.0
     for picture in ("hypervolume.png", "attainment.png"):
         assert (tmp_path / picture).stat().st_size > 10_000
