@@ -8,7 +8,7 @@ import pytest
 from robot_tasks.tasks import TASKS
 
 FOLDER = Path(__file__).parents[2] / "example_scenarios" / "robot"
-SCENARIOS = sorted(FOLDER.glob("*/*.json"))
+SCENARIOS = sorted(path for task in TASKS for path in FOLDER.glob(f"{task}/*.json"))
 
 
 def load(path: Path) -> dict:
@@ -81,7 +81,16 @@ def test_every_task_of_the_paper_has_the_five_variants_of_the_paper(task):
     assert variants <= {path.stem for path in (FOLDER / task).glob("*.json")}
 
 
+@pytest.mark.parametrize("task", TASKS)
+def test_one_sigma_box_is_that_of_the_operators_prior(task):
+    box, operator = (load(FOLDER / task / f"{name}.json") for name in ("prior_sampling_box", "operator_prior"))
+    for name, entry in operator["input_parameters"].items():
+        mean, std, within = entry["prior"]["mean"], entry["prior"]["std"], box["input_parameters"][name]["prior"]
+        assert (within["low"], within["high"]) == pytest.approx((mean - std, mean + std))
+
+
 def test_either_all_parameters_have_a_prior_or_none(case):
     _, scenario, path = case
-    has_prior = {"prior" in entry for entry in scenario["input_parameters"].values()}
+    is_joint = "priors" in scenario  # a density over all of them
+    has_prior = {is_joint or "prior" in entry for entry in scenario["input_parameters"].values()}
     assert has_prior == {not path.stem.endswith(("no_prior", "random_search"))}
