@@ -88,7 +88,7 @@ def execute(args: Namespace) -> int:
     with _only_a_note("summary"):
         _print_front(result)
     for name in ("history.csv", "pareto.csv"):
-        print(_short(result.run_folder) / name)
+        print(short(result.run_folder) / name)
     if not args.no_plot:
         with _only_a_note("picture"):
             _draw(result)
@@ -171,9 +171,9 @@ def _draw(result: Result) -> None:
 
     kind = "objectives" if result.best is not None else "pareto"
     for picture in plot_function(kind)([result.run_folder], result.run_folder / kind):
-        print(_short(picture))
+        print(short(picture))
 
 
-def _short(path: Path) -> Path:
+def short(path: Path) -> Path:
     """Return a path as seen from the working directory, if it is below it."""
     return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path

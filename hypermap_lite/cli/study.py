@@ -6,9 +6,9 @@ import os
 import shlex
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from hypermap_lite.cli.run import short
 from hypermap_lite.errors import HypermapLiteError, ScenarioError, UsageError
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def execute(args: Namespace) -> int:
         return _report_failures(failures)
     print(describe(summary))
     for table in write_tables(summary):
-        print(_short(table))
+        print(short(table))
     if not args.no_plot:
         _draw(summary)
     return _report_failures(failures) if failures else 0
@@ -200,9 +200,4 @@ def _draw(summary: Summary) -> None:
             print(f"note: no picture of kind {kind}: {text}", file=sys.stderr)
             continue
         for file in files:
-            print(_short(file))
-
-
-def _short(path: Path) -> Path:
-    """Return a path as seen from the working directory, if it is below it."""
-    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
+            print(short(file))
