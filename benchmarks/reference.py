@@ -3,7 +3,8 @@
     python benchmarks/reference.py
 
 Copies from `outputs/studies/` to `outputs/reference/`: of each study its tables, and of each variant the run with the
-first seed (scenario, history and front); the figures go to `docs/images/`. The studies must be finished:
+first seed (scenario, history and front); the figures that the page shows go to `docs/images/`. The studies must be
+finished:
 
     python -m hypermap_lite study example_scenarios/robot/studies/peg_insertion.json
 
@@ -26,6 +27,7 @@ STUDIES = ROOT / "example_scenarios" / "robot" / "studies"
 SOURCE, TARGET, IMAGES = ROOT / "outputs" / "studies", ROOT / "outputs" / "reference", ROOT / "docs" / "images"
 TABLES = ("study.json", "summary.csv", "averages.csv", "comparison.csv", "union_front.csv")
 RUN_FILES = ("scenario.json", "history.csv", "pareto.csv")
+PAGE = ROOT / "docs" / "experiments.md"
 PICTURES = ("hypervolume", "attainment")
 SECONDS_PER_HOUR = 3600.0
 
@@ -44,8 +46,11 @@ def keep(name: str) -> list[dict[str, str]]:
         kept.mkdir(parents=True)
         for file in RUN_FILES:
             shutil.copyfile(first / file, kept / file)
+    page = PAGE.read_text(encoding="utf-8")
     for picture in PICTURES:
-        shutil.copyfile(source / f"{picture}.png", IMAGES / f"study_{name}_{picture}.png")
+        shown = IMAGES / f"study_{name}_{picture}.png"
+        if shown.name in page:
+            shutil.copyfile(source / f"{picture}.png", shown)
     with (target / "comparison.csv").open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
