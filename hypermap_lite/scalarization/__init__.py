@@ -5,10 +5,15 @@ from typing import Final
 
 from hypermap_lite.scalarization.base import Normalization, Scalarization, WeightSampling
 from hypermap_lite.scalarization.linear import Linear
+from hypermap_lite.scalarization.modified_tchebyshev import ModifiedTchebyshev
 from hypermap_lite.scalarization.tchebyshev import Tchebyshev
 from hypermap_lite.scalarization.weights import BoundingBox, Dirichlet
 
-SCALARIZATIONS: Final[Mapping[str, type[Scalarization]]] = {"linear": Linear, "tchebyshev": Tchebyshev}
+SCALARIZATIONS: Final[Mapping[str, type[Scalarization]]] = {
+    "linear": Linear,
+    "tchebyshev": Tchebyshev,
+    "modified_tchebyshev": ModifiedTchebyshev,
+}
 """JSON name of each scalarization."""
 
 WEIGHTS: Final[Mapping[str, type[WeightSampling]]] = {"dirichlet": Dirichlet, "bounding_box": BoundingBox}
@@ -20,6 +25,7 @@ __all__ = [
     "BoundingBox",
     "Dirichlet",
     "Linear",
+    "ModifiedTchebyshev",
     "Normalization",
     "Scalarization",
     "Tchebyshev",

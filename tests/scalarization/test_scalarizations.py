@@ -5,7 +5,15 @@ import pytest
 
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.objectives import Goal, Objective
-from hypermap_lite.scalarization import SCALARIZATIONS, BoundingBox, Dirichlet, Linear, Normalization, Tchebyshev
+from hypermap_lite.scalarization import (
+    SCALARIZATIONS,
+    BoundingBox,
+    Dirichlet,
+    Linear,
+    ModifiedTchebyshev,
+    Normalization,
+    Tchebyshev,
+)
 
 every_scalarization = pytest.mark.parametrize("name", list(SCALARIZATIONS))
 RNG = np.random.default_rng(0)
@@ -39,6 +47,21 @@ def test_known_values() -> None:
     y, w = np.array([0.2, 0.8]), np.array([0.25, 0.75])
     assert Linear()(y, w) == pytest.approx(0.65)
     assert Tchebyshev(rho=0.1)(y, w) == pytest.approx(0.6 + 0.065)
+    assert ModifiedTchebyshev(rho=0.1)(y, w) == pytest.approx(0.2 + 0.1 * (0.15 + 0.2))
+
+
+def test_the_weights_of_modified_tchebyshev_are_the_direction_in_which_the_front_is_met() -> None:
+    first = np.linspace(0, 1, 1001)
+    front = np.column_stack([first, 1 - first])
+    best = front[np.argmin(ModifiedTchebyshev(rho=0.0)(front, np.array([0.3, 0.7])))]
+    assert best == pytest.approx([0.3, 0.7])
+
+
+def test_a_weight_of_zero_asks_modified_tchebyshev_for_the_best_of_that_objective() -> None:
+    front = np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]])
+    values = ModifiedTchebyshev()(front, np.array([0.0, 1.0]))
+    assert np.isfinite(values).all()
+    assert np.argmin(values) == 0
 
 
 def test_tchebyshev_reaches_the_middle_of_a_concave_front_and_the_sum_does_not() -> None:
@@ -100,7 +123,12 @@ def test_every_objective_needs_a_box(limits: dict, message: str) -> None:
 
 @pytest.mark.parametrize(
     ("member", "options"),
-    [(Tchebyshev, {"rho": -1}), (Dirichlet, {"alpha": 0}), (BoundingBox, {"limits": {"cost": [1, 0]}})],
+    [
+        (Tchebyshev, {"rho": -1}),
+        (ModifiedTchebyshev, {"rho": -1}),
+        (Dirichlet, {"alpha": 0}),
+        (BoundingBox, {"limits": {"cost": [1, 0]}}),
+    ],
 )
 def test_impossible_options_are_refused(member: type, options: dict) -> None:
     with pytest.raises(ScenarioError, match=next(iter(options))):
