@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from hypermap_lite.acquisition import ACQUISITIONS, PriorWeighting
-from hypermap_lite.design import DESIGNS, InitialDesign, PriorSampling, RandomSampling
+from hypermap_lite.acquisition import ACQUISITIONS, Bopro, Pibo, PriorWeighting
+from hypermap_lite.design import DESIGNS, Grid, InitialDesign, PriorSampling, RandomSampling
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.evaluation import EVALUATORS
 from hypermap_lite.evaluation.evaluator import Evaluator
@@ -37,7 +37,7 @@ SAMPLING_PHASES: Mapping[str, SamplingPhase] = {
 }
 """What the optimizers without a model do after the initial design."""
 
-PRIOR_WEIGHTINGS: Mapping[str, type[PriorWeighting]] = {"pibo": PriorWeighting}
+PRIOR_WEIGHTINGS: Mapping[str, type[PriorWeighting]] = {"pibo": Pibo, "bopro": Bopro}
 """JSON name of each way the prior enters the acquisition function."""
 
 
@@ -169,6 +169,7 @@ def build_optimizer(scenario: Scenario, history: History | None = None) -> Optim
             method=build_method(scenario),
             budget=scenario.budget.evaluations,
             seed=scenario.seed,
+            batch_size=scenario.budget.batch_size,
         )
     if scenario.optimizer.type in SAMPLING_PHASES:
         sampling = SAMPLING_PHASES[scenario.optimizer.type]
@@ -183,7 +184,14 @@ def build_design(scenario: Scenario) -> InitialDesign:
     name = scenario.design.type
     if name == "auto":
         name = "prior_sampling" if scenario.has_priors else "sobol"
-    return build_member(DESIGNS, ComponentSpec(type=name, path="$.design_of_experiment"), "design")
+    spec = ComponentSpec(type=name, options=scenario.design.options, path="$.design_of_experiment")
+    design = build_member(DESIGNS, spec, "design")
+    if isinstance(design, Grid):
+        try:
+            design.check(build_space(scenario))
+        except ScenarioError as error:
+            raise error.below(spec.path) from None
+    return design
 
 
 def build_method(scenario: Scenario) -> Method:

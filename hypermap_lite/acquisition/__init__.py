@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from typing import Final
 
-from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, PriorWeighting, Scorer
+from hypermap_lite.acquisition.bopro import Bopro
 from hypermap_lite.acquisition.expected_improvement import ExpectedImprovement
 from hypermap_lite.acquisition.noisy_expected_improvement import NoisyExpectedImprovement
-from hypermap_lite.acquisition.prior_weighted import PriorWeighted, PriorWeighting
+from hypermap_lite.acquisition.prior_weighted import Pibo, PriorWeighted
 from hypermap_lite.acquisition.thompson_sampling import ThompsonSampling
 from hypermap_lite.acquisition.upper_confidence_bound import UpperConfidenceBound
 
@@ -22,8 +23,10 @@ __all__ = [
     "ACQUISITIONS",
     "Acquisition",
     "AcquisitionContext",
+    "Bopro",
     "ExpectedImprovement",
     "NoisyExpectedImprovement",
+    "Pibo",
     "PriorWeighted",
     "PriorWeighting",
     "Scorer",

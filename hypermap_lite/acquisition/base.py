@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
+from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization, Scalarization
 from hypermap_lite.surrogates.base import Posterior
 from hypermap_lite.typing import FloatArray, Rng
@@ -34,6 +35,8 @@ class AcquisitionContext:
 
     normalization: Normalization
     rng: Rng
+    iteration: int = 1
+    """Running number, from 1, of the batch of model-based suggestions this one belongs to."""
 
 
 class Scorer(Protocol):
@@ -58,4 +61,18 @@ class Acquisition(Protocol):
 
     def scorer(self, context: AcquisitionContext) -> Scorer:
         """Become the scorer of one suggestion."""
+        ...
+
+
+class PriorWeighting(Protocol):
+    """Options of how the user's prior enters the choice, and for how long."""
+
+    def weight(self, n: int, model_budget: int) -> float:
+        """Return the exponent of the prior at the n-th model-based suggestion, n >= 1, of a budget of so many."""
+        ...
+
+    def scorer(
+        self, acquisition: Acquisition, context: AcquisitionContext, prior: ProductPrior, weight: float
+    ) -> Scorer:
+        """Become the scorer of one suggestion: the acquisition function's, changed by the prior, or another."""
         ...

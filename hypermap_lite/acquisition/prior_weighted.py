@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hypermap_lite.acquisition.base import Scorer
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.typing import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PriorWeighting:
+class Pibo:
     """How strongly, and for how long, the prior counts [1]_.
 
     The acquisition value is multiplied by the prior density to the power beta / n at the n-th model-based
@@ -42,6 +42,12 @@ class PriorWeighting:
         """Return the exponent at the n-th model-based suggestion, n >= 1, of a budget of so many."""
         beta = 0.1 * model_budget if self.beta is None else self.beta
         return beta / n
+
+    def scorer(
+        self, acquisition: Acquisition, context: AcquisitionContext, prior: ProductPrior, weight: float
+    ) -> PriorWeighted:
+        """Become the scorer of one suggestion."""
+        return PriorWeighted(inner=acquisition.scorer(context), prior=prior, weight=weight, floor=self.floor)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

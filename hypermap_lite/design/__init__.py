@@ -5,7 +5,7 @@ from typing import Final
 
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.grid import Grid
-from hypermap_lite.design.latin_hypercube import LatinHypercube
+from hypermap_lite.design.latin_hypercube import KLatinHypercube, LatinHypercube, PriorLatinHypercube
 from hypermap_lite.design.prior_sampling import PriorSampling
 from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.design.sobol import Sobol
@@ -14,9 +14,21 @@ DESIGNS: Final[Mapping[str, type[InitialDesign]]] = {
     "random_sampling": RandomSampling,
     "prior_sampling": PriorSampling,
     "latin_hypercube": LatinHypercube,
+    "k_latin_hypercube": KLatinHypercube,
+    "prior_latin_hypercube": PriorLatinHypercube,
     "sobol": Sobol,
     "grid": Grid,
 }
 """JSON name of each initial design."""
 
-__all__ = ["DESIGNS", "Grid", "InitialDesign", "LatinHypercube", "PriorSampling", "RandomSampling", "Sobol"]
+__all__ = [
+    "DESIGNS",
+    "Grid",
+    "InitialDesign",
+    "KLatinHypercube",
+    "LatinHypercube",
+    "PriorLatinHypercube",
+    "PriorSampling",
+    "RandomSampling",
+    "Sobol",
+]

@@ -4,42 +4,73 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
+from hypermap_lite.design.base import ENUMERATION_LIMIT
+from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import FloatArray, Rng
 
+UNIMAGINABLE = 10**300
+"""Larger numbers of points are shown as this."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
-    """The finest full grid of at most n points, bounds included; shuffled, so that a stopped run has seen all regions.
+    """A full grid, bounds included; shuffled, so that a stopped run has seen all regions.
 
-    All axes get the same number of levels, or all their own where they have fewer.
+    Without `levels` it is the finest grid of at most n points: all axes get the same number of levels, or all their own
+    where they have fewer. With `levels`, real axes have that many and the others all their own; of more than n points
+    the first n in the shuffled order are taken.
     """
 
-    def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
-        """Return the points of the grid, shape (k, d) with k <= n."""
-        levels = 1
-        while self._size(space, levels + 1) <= n and self._size(space, levels + 1) > self._size(space, levels):
-            levels += 1
-        X = np.array(list(product(*self._axes(space, levels))))
-        return space.snap(rng.permutation(X))
+    levels: int | None = None
+    """Points per real axis; None for as many as fit."""
 
-    @staticmethod
-    def _counts(space: SearchSpace, levels: int) -> list[int]:
-        return [levels if p.n_levels is None else min(levels, p.n_levels) for p in space.parameters]
+    def __post_init__(self) -> None:
+        if self.levels is not None and self.levels < 2:
+            raise ScenarioError("$.levels", f"there are {self.levels} levels", allowed="an integer >= 2, or null")
+
+    def check(self, space: SearchSpace) -> None:
+        """Raise a `ScenarioError` if the grid has too many points to list."""
+        if self.levels is not None and (size := self._size(space, self.levels)) > ENUMERATION_LIMIT:
+            allowed = f"at most {ENUMERATION_LIMIT} points"
+            problem = f"the grid would have {min(size, UNIMAGINABLE):.3g} points"
+            hint = "Take fewer levels, or another design."
+            raise ScenarioError("$.levels", problem, allowed=allowed, hint=hint)
+
+    def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
+        """Return up to n points of the grid, shape (k, d) with k <= n."""
+        self.check(space)
+        counts = self._finest(space, n) if self.levels is None else self._fixed(space, self.levels)
+        axes = np.meshgrid(*self._axes(space, counts), indexing="ij")
+        return space.snap(rng.permutation(np.column_stack([axis.ravel() for axis in axes])))[:n]
+
+    def _finest(self, space: SearchSpace, n: int) -> list[int]:
+        """Return the numbers of levels of the finest grid of at most n points."""
+
+        def counts(levels: int) -> list[int]:
+            return [levels if p.n_levels is None else min(levels, p.n_levels) for p in space.parameters]
+
+        levels = 1
+        while math.prod(counts(levels + 1)) <= n and math.prod(counts(levels + 1)) > math.prod(counts(levels)):
+            levels += 1
+        return counts(levels)
+
+    def _fixed(self, space: SearchSpace, levels: int) -> list[int]:
+        return [levels if p.n_levels is None else p.n_levels for p in space.parameters]
 
     def _size(self, space: SearchSpace, levels: int) -> int:
-        return math.prod(self._counts(space, levels))
+        return math.prod(self._fixed(space, levels))
 
-    def _axes(self, space: SearchSpace, levels: int) -> list[FloatArray]:
+    def _axes(self, space: SearchSpace, counts: list[int]) -> list[FloatArray]:
         axes = []
-        for parameter, count in zip(space.parameters, self._counts(space, levels), strict=True):
+        for parameter, count in zip(space.parameters, counts, strict=True):
+            if count == parameter.n_levels:
+                axes.append(parameter.level_codes())
+                continue
             spread = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
-            if count == parameter.n_levels or not parameter.is_ordered:
-                spread = (np.arange(count) + 0.5) / count
-            axes.append(parameter.snap(spread))
+            axes.append(parameter.snap(spread if parameter.is_ordered else (np.arange(count) + 0.5) / count))
         return axes

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
-from hypermap_lite.acquisition.prior_weighted import PriorWeighted, PriorWeighting
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, PriorWeighting, Scorer
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.evaluation.outcome import Suggestion
@@ -81,6 +80,8 @@ class BayesianOptimizer(Optimizer):
         The parts.
     budget
         Configurations of the whole run; sets the default strength of the prior.
+    batch_size
+        Configurations suggested at a time.
     seed
         Of the scenario.
     """
@@ -94,12 +95,14 @@ class BayesianOptimizer(Optimizer):
         method: Method,
         budget: int,
         seed: int,
+        batch_size: int = 1,
     ) -> None:
         super().__init__(history)
         self._prior = prior
         self._initial = initial
         self._method = method
         self._budget = budget
+        self._batch_size = batch_size
         self._seed = seed
         self._warm_starts: dict[int, Any] = {}
         self._posterior_of: tuple[int, Posterior] | None = None
@@ -128,14 +131,10 @@ class BayesianOptimizer(Optimizer):
     def _with_model(self, trial: int, rng: Rng) -> Suggestion | None:
         space = self.history.space
         context = self._context(rng)
-        scorer: Scorer = self._method.acquisition.scorer(context)
         weight = self._prior_weight()
-        if weight and self._method.prior_weighting is not None:
-            floor = self._method.prior_weighting.floor
-            scorer = PriorWeighted(inner=scorer, prior=self._prior, weight=weight, floor=floor)
         best = self._method.maximizer.maximize(
             MaximizationProblem(
-                scorer=scorer,
+                scorer=self._scorer(context, weight),
                 space=space,
                 prior=self._prior,
                 incumbents=self._incumbents(context),
@@ -154,6 +153,13 @@ class BayesianOptimizer(Optimizer):
             acquisition_value=best.score,
         )
 
+    def _scorer(self, context: AcquisitionContext, weight: float | None) -> Scorer:
+        """Return what is maximized: the acquisition function, with the prior where it has a part."""
+        weighting, acquisition = self._method.prior_weighting, self._method.acquisition
+        if weighting is None or not weight:
+            return acquisition.scorer(context)
+        return weighting.scorer(acquisition, context, self._prior, weight)
+
     def _context(self, rng: Rng) -> AcquisitionContext:
         X, Y = self.history.X(), self.history.Y()
         normalization = Normalization.of_front(Y, reference_point_of(self.history.objectives))
@@ -166,14 +172,19 @@ class BayesianOptimizer(Optimizer):
             weights=self._method.weights.sample(self.history.objectives, normalization, rng),
             normalization=normalization,
             rng=rng,
+            iteration=1 + self._n_model_based() // self._batch_size,
         )
+
+    def _n_model_based(self) -> int:
+        """Return the number of model-based suggestions before this one."""
+        earlier = [*(e.suggestion for e in self.history), *self.in_flight]
+        return sum(suggestion.phase == MODEL for suggestion in earlier)
 
     def _prior_weight(self) -> float | None:
         """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
         if self._method.prior_weighting is None or self._prior.is_uniform:
             return None
-        earlier = [*(e.suggestion for e in self.history), *self.in_flight]
-        n = 1 + sum(suggestion.phase == MODEL for suggestion in earlier)
+        n = 1 + self._n_model_based()
         return self._method.prior_weighting.weight(n, max(self._budget - len(self._initial), 1))
 
     def _incumbents(self, context: AcquisitionContext) -> FloatArray:

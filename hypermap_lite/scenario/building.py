@@ -35,7 +35,7 @@ def build_scenario(
         parameters=tuple(_parameter(name, entry) for name, entry in document["input_parameters"].items()),
         joint_priors=tuple(_component(prior, f"$.priors[{i}]") for i, prior in enumerate(document["priors"])),
         objectives=tuple(_objective(entry) for entry in document["objectives"]),
-        design=DesignSpec(**document["design_of_experiment"]),
+        design=_design(document["design_of_experiment"]),
         budget=BudgetSpec(**document["budget"]),
         optimizer=_component(document["optimizer"], "$.optimizer"),
         surrogate=_component(document["surrogate"], "$.surrogate"),
@@ -72,6 +72,12 @@ def _parameter(name: str, entry: Mapping[str, Any]) -> ParameterSpec:
 
 def _objective(entry: Mapping[str, Any]) -> Objective:
     return Objective(name=entry["name"], goal=Goal(entry["goal"]), reference_point=entry["reference_point"])
+
+
+def _design(section: Mapping[str, Any]) -> DesignSpec:
+    spec = _component(section, "$.design_of_experiment")
+    options = {key: value for key, value in spec.options.items() if key != "number_of_samples"}
+    return DesignSpec(type=spec.type, number_of_samples=section["number_of_samples"], options=options)
 
 
 def _acquisition(section: Mapping[str, Any]) -> AcquisitionSpec:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from hypermap_lite.scenario.schemas import Schema, child_schema, items_schema, properties_of
 
@@ -12,6 +13,9 @@ SAMPLES_PER_PARAMETER = 2
 
 MIN_SAMPLES = 6
 """Points of the smallest default design."""
+
+BEGINNING: Final[Mapping[str, str]] = {"local_search": "random_points", "evolutionary": "population_size"}
+"""Optimizers that begin with a number of points of their own, and the option that says how many."""
 
 
 def fill(schema: Schema, value: Any) -> Any:
@@ -47,10 +51,26 @@ def fill_derived(document: Mapping[str, Any]) -> dict[str, Any]:
 def default_samples(document: Mapping[str, Any]) -> int:
     """Return the size of the design for want of one the user gave.
 
-    The budget has no part in it, so that a run goes on with another budget as if it had had it from the start; a
-    smaller budget ends the run within the design.
+    It is what the optimizer begins with, if it says so, and the whole of a grid whose levels are given. The budget has
+    no part in it, so that a run goes on with another budget as if it had had it from the start; a smaller budget ends
+    the run within the design.
     """
-    return max(SAMPLES_PER_PARAMETER * len(document["input_parameters"]), MIN_SAMPLES)
+    parameters = document["input_parameters"].values()
+    if levels := document["design_of_experiment"].get("levels"):
+        has_default = any(entry["parameter_default"] is not None for entry in parameters)
+        return math.prod(_n_grid_levels(entry, levels) for entry in parameters) + has_default
+    if begins_with := BEGINNING.get(document["optimizer"]["type"]):
+        return int(document["optimizer"][begins_with])
+    return max(SAMPLES_PER_PARAMETER * len(parameters), MIN_SAMPLES)
+
+
+def _n_grid_levels(parameter: Mapping[str, Any], levels: int) -> int:
+    """Return how many levels a parameter has in a grid that gives real ones so many."""
+    if parameter["parameter_type"] == "real":
+        return levels
+    if parameter["parameter_type"] == "integer":
+        return int(parameter["values"][1]) - int(parameter["values"][0]) + 1
+    return len(parameter["values"])
 
 
 def has_priors(document: Mapping[str, Any]) -> bool:

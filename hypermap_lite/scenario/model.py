@@ -58,6 +58,9 @@ class DesignSpec:
     number_of_samples: int
     """Points of the design, the default configuration included."""
 
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Keyword arguments of the design's class."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BudgetSpec:

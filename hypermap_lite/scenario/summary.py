@@ -114,6 +114,8 @@ def _prior_use(scenario: Scenario) -> str:
     if weighting is None:
         return "priors: not in the acquisition (prior_weighting is none)"
     options = dict(weighting.options)
+    if weighting.type == "bopro":
+        return f"priors: bopro{_options(options)} takes the place of {scenario.acquisition.function.type}"
     if options.get("beta") is None:
         options["beta"] = 0.1 * max(scenario.budget.evaluations - scenario.design.number_of_samples, 1)
     return f"priors: acquisition weighted by {weighting.type}{_options(options)}"

@@ -1,9 +1,17 @@
 """What holds for every acquisition function, with either surrogate and either scalarization."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from hypermap_lite.acquisition import ACQUISITIONS, AcquisitionContext, ExpectedImprovement, NoisyExpectedImprovement
+from hypermap_lite.acquisition import (
+    ACQUISITIONS,
+    AcquisitionContext,
+    ExpectedImprovement,
+    NoisyExpectedImprovement,
+    UpperConfidenceBound,
+)
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.scalarization import SCALARIZATIONS, Normalization
 from hypermap_lite.surrogates import SURROGATES, GaussianProcess
@@ -109,9 +117,18 @@ def test_a_lucky_observation_is_no_incumbent_for_noisy_expected_improvement() ->
         ("noisy_expected_improvement", {"samples": 1}),
         ("expected_improvement", {"samples": 0}),
         ("upper_confidence_bound", {"beta": -1}),
+        ("upper_confidence_bound", {"beta": "linear"}),
         ("thompson_sampling", {"features": 0}),
     ],
 )
 def test_impossible_options_are_refused(name: str, options: dict) -> None:
     with pytest.raises(ScenarioError, match=next(iter(options))):
         ACQUISITIONS[name](**options)
+
+
+def test_a_logarithmic_bound_widens_with_the_batches() -> None:
+    bound = UpperConfidenceBound(beta="logarithmic")
+    assert [bound.width(t) for t in (1, 10)] == pytest.approx([np.sqrt(np.log(3) / 8), np.sqrt(np.log(21) / 8)])
+    assert UpperConfidenceBound(beta=1.5).width(10) == 1.5
+    scores = [bound.scorer(replace(context(Y=Y[:, :1]), iteration=t))(Z) for t in (1, 100)]
+    assert (scores[1] > scores[0]).all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hypermap_lite.acquisition import PriorWeighted, PriorWeighting
+from hypermap_lite.acquisition import Pibo, PriorWeighted
 from hypermap_lite.acquisition.improvement import LinearImprovement
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors import AsJoint, BetaPrior, GaussianPrior, ProductPrior, UniformPrior, WeightsPrior
@@ -29,7 +29,7 @@ def inner() -> LinearImprovement:
 
 
 def test_without_floor_it_is_the_acquisition_times_the_density_to_the_power_beta_over_n() -> None:
-    weight = PriorWeighting(beta=5.0).weight(n=2, model_budget=100)
+    weight = Pibo(beta=5.0).weight(n=2, model_budget=100)
     scorer = PriorWeighted(inner=inner(), prior=prior(), weight=weight, floor=0.0)
     relative = np.exp(prior().log_density(X) - prior().log_peak())
     assert np.exp(scorer(X)) == pytest.approx(np.exp(inner()(X)) * relative**2.5)
@@ -89,11 +89,11 @@ def test_outside_the_range_of_a_uniform_prior_there_is_only_the_floor(floor: flo
 
 
 def test_the_default_strength_is_a_tenth_of_the_model_based_budget() -> None:
-    assert PriorWeighting().weight(n=1, model_budget=48) == pytest.approx(4.8)
-    assert PriorWeighting().weight(n=48, model_budget=48) == pytest.approx(0.1)
+    assert Pibo().weight(n=1, model_budget=48) == pytest.approx(4.8)
+    assert Pibo().weight(n=48, model_budget=48) == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("options", [{"beta": -1}, {"floor": 1.0}, {"floor": -0.1}])
 def test_impossible_options_are_refused(options: dict) -> None:
     with pytest.raises(ScenarioError, match=next(iter(options))):
-        PriorWeighting(**options)
+        Pibo(**options)

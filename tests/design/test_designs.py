@@ -4,8 +4,18 @@ import numpy as np
 import pytest
 
 from hypermap_lite.design import DESIGNS
-from hypermap_lite.priors import AsJoint, GaussianPrior, ProductPrior
-from hypermap_lite.space import CategoricalParameter, IntegerParameter, RealParameter, SearchSpace
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.priors import (
+    AsJoint,
+    BetaPrior,
+    GaussianPrior,
+    JointMixturePrior,
+    KernelDensityPrior,
+    ProductPrior,
+    UniformPrior,
+    WeightsPrior,
+)
+from hypermap_lite.space import CategoricalParameter, IntegerParameter, OrdinalParameter, RealParameter, SearchSpace
 
 MIXED = SearchSpace(
     (
@@ -78,3 +88,98 @@ def test_prior_sampling_draws_from_the_prior() -> None:
     prior = ProductPrior(1, (((0,), AsJoint(GaussianPrior(mean=7, std=0.1).on(space.parameters[0]))),))
     X = DESIGNS["prior_sampling"]().points(space, prior, 200, np.random.default_rng(0))
     assert X.mean() == pytest.approx(0.7, abs=0.01)
+
+
+def by_level(space: SearchSpace, name: str, X: np.ndarray) -> dict[object, int]:
+    levels = [c[name] for c in space.decode(X)]
+    return {level: levels.count(level) for level in levels}
+
+
+def test_every_combination_of_categories_has_a_latin_hypercube_of_its_own() -> None:
+    space = SearchSpace((RealParameter(name="r", low=0, high=1), *CATEGORIES))
+    X = points("k_latin_hypercube", space, 26)
+    shares = {}
+    for x, c in zip(X, space.decode(X), strict=True):
+        shares.setdefault((c["c"], c["d"]), []).append(x[0])
+    assert sorted(map(len, shares.values())) == [4, 4, 4, 4, 5, 5]
+    sliced = [sorted(np.floor(np.array(share) * 4)) for share in shares.values() if len(share) == 4]
+    assert sliced == [[0, 1, 2, 3]] * 4
+
+
+def test_with_fewer_points_than_combinations_each_point_is_of_another_combination() -> None:
+    many = tuple(CategoricalParameter(name=f"c{i}", values=tuple(map(str, range(64)))) for i in range(12))
+    assert len(points("k_latin_hypercube", SearchSpace(many), 5)) == 5
+    X = points("k_latin_hypercube", SearchSpace((RealParameter(name="r", low=0, high=1), *CATEGORIES)), 4)
+    assert len({tuple(x[1:]) for x in X}) == 4
+
+
+CATEGORIES = (
+    CategoricalParameter(name="c", values=("a", "b", "c")),
+    CategoricalParameter(name="d", values=("x", "y")),
+)
+ONE_OF_EACH = {
+    "gaussian": (RealParameter(name="p", low=0, high=10), GaussianPrior(mean=7, std=0.5)),
+    "far_gaussian": (RealParameter(name="p", low=0, high=1), GaussianPrior(mean=3, std=0.1)),
+    "beta": (RealParameter(name="p", low=0, high=1), BetaPrior(shape="decay")),
+    "uniform": (RealParameter(name="p", low=0, high=1), UniformPrior(low=0.2, high=0.4)),
+    "integer": (IntegerParameter(name="p", low=0, high=10**6), GaussianPrior(mean=10, std=10**4)),
+    "ordinal": (OrdinalParameter(name="p", values=tuple(range(2000))), WeightsPrior(weights=[0, 1, 3, 0] * 500)),
+}
+
+
+@pytest.mark.parametrize(("parameter", "prior"), ONE_OF_EACH.values(), ids=ONE_OF_EACH)
+def test_slices_of_a_prior_latin_hypercube_have_equal_prior_mass(parameter, prior) -> None:
+    space, density = SearchSpace((parameter,)), prior.on(parameter)
+    X = DESIGNS["prior_latin_hypercube"]().points(
+        space, ProductPrior(1, (((0,), AsJoint(density)),)), 8, np.random.default_rng(0)
+    )
+    masses = np.sort(density.cdf(X[:, 0]))
+    assert masses == pytest.approx((np.arange(8) + 0.5) / 8, abs=0.5 / 8 + 2e-3)
+
+
+def test_a_prior_latin_hypercube_takes_the_marginals_of_joint_priors() -> None:
+    a, b = RealParameter(name="a", low=0, high=1), IntegerParameter(name="b", low=0, high=99)
+    parts = [
+        {"mean": {"a": 0.2, "b": 20}, "std": {"a": 0.01, "b": 1}},
+        {"mean": {"a": 0.8, "b": 80}, "std": {"a": 0.01, "b": 1}},
+    ]
+    points_of = {"a": [0.2, 0.21, 0.8, 0.79], "b": [20, 21, 80, 79]}
+    joints = [JointMixturePrior(components=parts), KernelDensityPrior(points=points_of, bandwidth_factor=0.1)]
+    joints.append(KernelDensityPrior(points=points_of, bandwidth_factor=0.1, independent=True))
+    for joint in joints:
+        prior = ProductPrior(2, (((0, 1), joint.on([a, b])),))
+        X = DESIGNS["prior_latin_hypercube"]().points(SearchSpace((a, b)), prior, 10, np.random.default_rng(0))
+        assert (X < 0.5).sum(axis=0).tolist() == [5, 5]
+        assert np.minimum(np.abs(X - 0.2), np.abs(X - 0.8)).max() < 0.1
+
+
+def test_levels_of_a_category_share_a_prior_latin_hypercube_by_their_weights() -> None:
+    weights = WeightsPrior(weights=[6, 3, 1]).on(CATEGORIES[0])
+    space = SearchSpace((CATEGORIES[0], RealParameter(name="r", low=0, high=1)))
+    prior = ProductPrior(2, (((0,), AsJoint(weights)),))
+    X = DESIGNS["prior_latin_hypercube"]().points(space, prior, 20, np.random.default_rng(0))
+    assert by_level(space, "c", X) == {"a": 12, "b": 6, "c": 2}
+
+
+@pytest.mark.parametrize("name", ["k_latin_hypercube", "prior_latin_hypercube", "latin_hypercube"])
+def test_a_space_of_categories_alone_is_no_trouble(name: str) -> None:
+    assert len(points(name, SearchSpace(CATEGORIES), 5)) == 5
+
+
+def test_a_grid_of_given_levels_holds_all_levels_of_the_other_parameters() -> None:
+    space = SearchSpace(
+        (RealParameter(name="r", low=0, high=9), IntegerParameter(name="n", low=1, high=9, log=True), *CATEGORIES)
+    )
+    grid = DESIGNS["grid"](levels=10)
+    X = grid.points(space, ProductPrior(4), 1000, np.random.default_rng(0))
+    assert len(X) == 10 * 9 * 6
+    assert by_level(space, "r", X) == {float(v): 54 for v in range(10)}
+    assert len(grid.points(space, ProductPrior(4), 7, np.random.default_rng(0))) == 7
+
+
+def test_a_grid_too_large_to_list_is_refused() -> None:
+    space = SearchSpace(tuple(RealParameter(name=f"r{i}", low=0, high=1) for i in range(400)))
+    with pytest.raises(ScenarioError, match=r"\$\.levels: the grid would have 1e\+300 points"):
+        DESIGNS["grid"](levels=10).check(space)
+    with pytest.raises(ScenarioError, match="levels"):
+        DESIGNS["grid"](levels=1)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hypermap_lite.acquisition import ACQUISITIONS
+from hypermap_lite.acquisition import ACQUISITIONS, UpperConfidenceBound
 from hypermap_lite.assembly import build_optimizer
 from hypermap_lite.design import DESIGNS
 from hypermap_lite.maximizers import MAXIMIZERS
@@ -157,6 +157,41 @@ def test_the_prior_decays_with_the_number_of_model_based_suggestions() -> None:
     optimizer = run(scenario_of(input_parameters=GAUSSIANS, acquisition=acquisition), 9, batch=2)
     weights = [e.suggestion.prior_weight for e in optimizer.history]
     assert weights == [None] * 5 + [6.0, 3.0, 2.0, 1.5]
+
+
+@pytest.mark.parametrize("changes", [{}, {"objectives": [{"name": "near"}]}, {"surrogate": "random_forest"}], ids=str)
+def test_bopro_runs_with_categories_batches_and_failures_and_counts_its_suggestions(changes: dict) -> None:
+    acquisition = {"prior_weighting": {"method": "bopro", "model_weight": 6.0}}
+    scenario = scenario_of(input_parameters=MIXED, acquisition=acquisition, **changes)
+    whole = build_optimizer(load_scenario(scenario))
+    while len(whole.history) < 10:
+        suggestions = whole.ask(2)
+        whole.tell([fail(s) if s.trial == 3 else evaluate(s, mixed_objectives) for s in suggestions])
+    assert [e.suggestion.prior_weight for e in whole.history] == [None] * 5 + [6.0, 3.0, 2.0, 1.5, 1.2]
+    again = resumed(scenario, list(whole.history)[:8])
+    assert [s.configuration for s in again.ask(2)] == configurations(whole)[8:]
+
+
+def test_bopro_goes_where_the_prior_points_until_the_model_knows_better() -> None:
+    acquisition = {"prior_weighting": {"method": "bopro", "model_weight": 4.0}}
+    wrong = {"a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.9, "std": 0.05}}}
+    scenario = scenario_of(input_parameters=wrong, acquisition=acquisition, objectives=[{"name": "near"}])
+    optimizer = run(scenario, 25, function=lambda c: {"near": (c["a"] - 0.2) ** 2})
+    a = [c["a"] for c in configurations(optimizer)]
+    assert a[5] > 0.7
+    assert min(np.abs(np.array(a) - 0.2)) < 0.02
+
+
+@pytest.mark.parametrize(("batch", "expected"), [(1, [1, 2, 3, 4]), (2, [1, 1, 2, 2])])
+def test_a_logarithmic_bound_counts_batches(batch: int, expected: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[int] = []
+    width = UpperConfidenceBound.width
+    monkeypatch.setattr(UpperConfidenceBound, "width", lambda self, t: seen.append(t) or width(self, t))
+    bound = {"type": "upper_confidence_bound", "beta": "logarithmic"}
+    design = {"type": "sobol", "number_of_samples": 4}
+    budget = {"evaluations": 8, "batch_size": batch}
+    run(scenario_of(acquisition=bound, design_of_experiment=design, budget=budget), 8, batch=batch)
+    assert seen == expected
 
 
 def test_without_prior_there_is_no_prior_weight() -> None:
