@@ -25,7 +25,6 @@ def lint(scenario: Scenario) -> list[str]:
     warnings = [
         *_levels(scenario),
         *_linear_decades(scenario),
-        *_partial_defaults(scenario),
         *_priors_outside(scenario),
         *single_points(scenario),
         *_unused_priors(scenario),
@@ -79,13 +78,6 @@ def _linear_decades(scenario: Scenario) -> Iterator[tuple[str, str]]:
             if low > 0 and high / low >= 10**DECADES:
                 text = f'it spans {math.log10(high / low):.1f} decades; "scale": "log" searches them evenly.'
                 yield f"$.input_parameters.{parameter.name}", text
-
-
-def _partial_defaults(scenario: Scenario) -> Iterator[tuple[str, str]]:
-    without = [p.name for p in scenario.parameters if p.parameter_default is None]
-    if without and len(without) < len(scenario.parameters):
-        text = f"the default configuration is not evaluated, since '{without[0]}' has no parameter_default."
-        yield f"$.input_parameters.{without[0]}", text
 
 
 def _priors_outside(scenario: Scenario) -> Iterator[tuple[str, str]]:

@@ -24,7 +24,7 @@ class Parameter(ABC):
 
     name: str
     default: Value | None = None
-    """Value tried first, if every parameter has one."""
+    """Value tried first."""
 
     is_ordered: ClassVar[bool] = True
     """Whether close codes mean similar values."""

@@ -1,8 +1,10 @@
 """The trials before there is a model."""
 
-from hypermap_lite.design import Grid, RandomSampling, Sobol
+import pytest
+
+from hypermap_lite.design import DESIGNS, Grid, PriorSampling, RandomSampling, Sobol
 from hypermap_lite.optimizers.initial import InitialPhase
-from hypermap_lite.priors import ProductPrior
+from hypermap_lite.priors import AsJoint, GaussianPrior, ProductPrior
 from hypermap_lite.space import IntegerParameter, RealParameter, SearchSpace
 
 LINE = SearchSpace((RealParameter(name="x", low=0, high=1, default=0.5),))
@@ -37,3 +39,28 @@ def test_a_default_leaves_the_design_whole() -> None:
 def test_the_same_seed_gives_the_same_first_trials() -> None:
     a, b = (InitialPhase(LINE, ProductPrior(1), Sobol(), 6, seed=7) for _ in range(2))
     assert [a.suggestion(i) for i in range(6)] == [b.suggestion(i) for i in range(6)]
+
+
+@pytest.mark.parametrize("name", list(DESIGNS))
+def test_a_partial_default_is_completed_by_the_design(name: str) -> None:
+    space = SearchSpace((RealParameter(name="a", low=0, high=1, default=0.3), RealParameter(name="b", low=0, high=1)))
+    phase = InitialPhase(space, ProductPrior(2), DESIGNS[name](), 4, seed=0)
+    first = phase.suggestion(0)
+    assert (first.phase, first.configuration["a"]) == ("default", 0.3)
+    assert 0 <= first.configuration["b"] <= 1
+    assert [phase.suggestion(i).phase for i in range(1, len(phase))] == ["design"] * (len(phase) - 1)
+
+
+def test_a_partial_default_is_completed_from_the_prior_where_the_design_draws_from_it() -> None:
+    axis = RealParameter(name="b", low=0, high=1)
+    space = SearchSpace((RealParameter(name="a", low=0, high=1, default=0.3), axis))
+    prior = ProductPrior(2, (((1,), AsJoint(GaussianPrior(mean=0.8, std=0.01).on(axis))),))
+    phase = InitialPhase(space, prior, PriorSampling(), 4, seed=0)
+    assert phase.suggestion(0).configuration["b"] == pytest.approx(0.8, abs=0.05)
+
+
+def test_completing_a_default_leaves_the_points_of_the_design_as_they_were() -> None:
+    bare = SearchSpace(tuple(RealParameter(name=n, low=0, high=1) for n in "ab"))
+    partial = SearchSpace((RealParameter(name="a", low=0, high=1, default=0.3), bare.parameters[1]))
+    phase = InitialPhase(partial, ProductPrior(2), Sobol(), 4, seed=0)
+    assert phase.configurations[1:] == InitialPhase(bare, ProductPrior(2), Sobol(), 3, seed=0).configurations

@@ -144,11 +144,6 @@ def test_decades_on_a_linear_scale_are_named() -> None:
     assert warnings_for("rate", parameter_type="real", values=[1e-5, 1], scale="log") == []
 
 
-def test_some_defaults_without_the_others_are_named() -> None:
-    (warning,) = warnings_for("y", parameter_type="real", values=[0, 1], parameter_default=0.5)
-    assert warning.startswith("$.input_parameters.x: the default configuration is not evaluated")
-
-
 def test_priors_that_nothing_uses_are_named() -> None:
     priors = [{"type": "mixture", "components": [{"mean": {"x": 5}, "std": {"x": 1}}]}]
     (warning,) = warnings(priors=priors, design_of_experiment="sobol", optimizer="random_search")
