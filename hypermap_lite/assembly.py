@@ -15,9 +15,11 @@ from hypermap_lite.evaluation.evaluator import Evaluator
 from hypermap_lite.evaluation.python_function import PythonFunction
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers import MAXIMIZERS
-from hypermap_lite.optimizers import OPTIMIZERS, Optimizer
+from hypermap_lite.optimizers import OPTIMIZERS, SEARCHES, Optimizer
 from hypermap_lite.optimizers.bayesian import BayesianOptimizer, Method
+from hypermap_lite.optimizers.fitness import Fitness, normalized_weights
 from hypermap_lite.optimizers.initial import InitialPhase
+from hypermap_lite.optimizers.model_free import ModelFreeOptimizer
 from hypermap_lite.optimizers.sampling import SamplingOptimizer, SamplingPhase
 from hypermap_lite.priors import JOINT_PRIORS, PRIORS, AsJoint, Density, JointDensity, ProductPrior
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS, BoundingBox, WeightSampling
@@ -174,9 +176,27 @@ def build_optimizer(scenario: Scenario, history: History | None = None) -> Optim
     if scenario.optimizer.type in SAMPLING_PHASES:
         sampling = SAMPLING_PHASES[scenario.optimizer.type]
         return SamplingOptimizer(history, prior=prior, initial=initial, sampling=sampling, seed=scenario.seed)
+    if scenario.optimizer.type in SEARCHES:
+        return _build_search(scenario, history, prior, initial)
     path, known = f"{scenario.optimizer.path}.type", ", ".join(OPTIMIZERS)
     hint = nearest(scenario.optimizer.type, OPTIMIZERS)
     raise ScenarioError(path, f"unknown optimizer {scenario.optimizer.type!r}", allowed=known, hint=hint)
+
+
+def _build_search(
+    scenario: Scenario, history: History, prior: ProductPrior, initial: InitialPhase
+) -> ModelFreeOptimizer:
+    """Make an optimizer that needs no model; its fitness is the acquisition's scalarization, with fixed weights."""
+    search = build_member(SEARCHES, scenario.optimizer, "optimizer")
+    try:
+        search.check(history.space)
+        weights = normalized_weights(search.weights, len(scenario.objectives))
+    except ScenarioError as error:
+        raise error.below(scenario.optimizer.path) from None
+    scalarization = build_member(SCALARIZATIONS, scenario.acquisition.scalarization, "scalarization")
+    n_reference = max(scenario.design.number_of_samples, search.n_initial)
+    fitness = Fitness(scalarization=scalarization, weights=weights, n_reference=n_reference)
+    return ModelFreeOptimizer(history, prior=prior, initial=initial, search=search, fitness=fitness, seed=scenario.seed)
 
 
 def build_design(scenario: Scenario) -> InitialDesign:

@@ -58,6 +58,7 @@ ONLY_IN = {
     "jsonschema": ("hypermap_lite.scenario.schemas",),
     "referencing": ("hypermap_lite.scenario.schemas",),
     "moocore": ("hypermap_lite.pareto",),
+    "cma": ("hypermap_lite.maximizers.evolution_strategy",),
     "rich": ("hypermap_lite.cli",),
     "av": ("robot_tasks.render",),
     "PIL": ("robot_tasks.render",),
@@ -70,7 +71,7 @@ ROBOTS_MAY_IMPORT = ("hypermap_lite.evaluation",)
 
 MAY_PRINT = ("hypermap_lite.cli", "hypermap_lite.__main__", "robot_tasks.__main__")
 
-SLOW = ("sklearn", "matplotlib", "mujoco", "pandas", "scipy.stats", "scipy.optimize", "jsonschema", "rich")
+SLOW = ("sklearn", "matplotlib", "mujoco", "pandas", "scipy.stats", "scipy.optimize", "jsonschema", "rich", "cma")
 """What `--help` must not wait for."""
 
 

@@ -17,7 +17,7 @@ from hypermap_lite.design import DESIGNS
 from hypermap_lite.evaluation import EVALUATORS
 from hypermap_lite.maximizers import MAXIMIZERS
 from hypermap_lite.objectives import Goal, Objective
-from hypermap_lite.optimizers import OPTIMIZERS
+from hypermap_lite.optimizers import OPTIMIZERS, SEARCHES
 from hypermap_lite.priors import JOINT_PRIORS, PRIORS
 from hypermap_lite.priors.beta import SHAPES
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS
@@ -61,7 +61,7 @@ FROM_ELSEWHERE = {"objectives", "search_path", "working_directory", "parameters"
 
 MEMBERS = [
     pytest.param(section, kind, member, id=f"{section}-{kind}")
-    for section, family in FAMILIES.items()
+    for section, family in [*FAMILIES.items(), ("optimizer", SEARCHES)]
     for kind, member in family.items()
 ]
 

@@ -62,7 +62,7 @@ class Suggestion:
 
     configuration: Configuration
     phase: str
-    """``default``, ``design``, ``model``, ``random`` or ``prior``: which rule chose it."""
+    """Which rule chose it: ``default``, ``design``, ``model``, ``random``, ``prior``, or the phase of a search."""
 
     prior_weight: float | None = None
     """Exponent the user prior had in the choice; None where it had no part."""

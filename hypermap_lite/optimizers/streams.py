@@ -16,6 +16,8 @@ class Stream(IntEnum):
     SUGGESTION = 1
     EVALUATION = 2
     EXPLORATION = 3
+    NEIGHBOURS = 4
+    RESTART = 5
 
 
 def generator(seed: int, stream: Stream, *numbers: int) -> Rng:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
 from hypermap_lite.scenario.command_lint import lint_command
+from hypermap_lite.scenario.defaults import BEGINNING
 from hypermap_lite.scenario.model import ParameterSpec, Scenario
 from hypermap_lite.typing import Value
 
@@ -15,6 +16,10 @@ Part: TypeAlias = tuple[Mapping[str, float], Mapping[str, float], float]
 
 MASS_OUTSIDE = 0.95
 """A prior with more of its mass than this outside the bounds is worth a warning."""
+
+PRIOR_DESIGNS = ("prior_sampling", "prior_latin_hypercube")
+PRIOR_OPTIMIZERS = ("prior_sampling", "local_search", "evolutionary", "cma_es")
+"""What draws from the priors."""
 
 DECADES = 3
 """A linear parameter that spans at least so many decades is worth a warning."""
@@ -28,6 +33,7 @@ def lint(scenario: Scenario) -> list[str]:
         *_priors_outside(scenario),
         *single_points(scenario),
         *_unused_priors(scenario),
+        *_maximizer(scenario),
         *_reference_points(scenario),
         *_budget(scenario),
         *_workers(scenario),
@@ -127,13 +133,19 @@ def _percent(share: float) -> str:
 
 
 def _unused_priors(scenario: Scenario) -> Iterator[tuple[str, str]]:
-    uses = scenario.design.type == "prior_sampling" or scenario.optimizer.type == "prior_sampling"
+    uses = scenario.design.type in PRIOR_DESIGNS or scenario.optimizer.type in PRIOR_OPTIMIZERS
     weighted = scenario.optimizer.type == "bayesian" and scenario.acquisition.prior_weighting is not None
     if scenario.has_priors and not uses and not weighted:
         yield (
             "$.optimizer",
             "the priors change nothing: neither the design, the optimizer nor the acquisition uses them.",
         )
+
+
+def _maximizer(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    other = [p.name for p in scenario.parameters if p.parameter_type != "real"]
+    if scenario.optimizer.type == "bayesian" and scenario.maximizer.type == "cma_es" and other:
+        yield "$.maximizer.type", f"'{other[0]}' is not real; local_search takes the place of cma_es."
 
 
 def _reference_points(scenario: Scenario) -> Iterator[tuple[str, str]]:
@@ -147,6 +159,11 @@ def _budget(scenario: Scenario) -> Iterator[tuple[str, str]]:
     evaluations = scenario.budget.evaluations
     if scenario.optimizer.type == "bayesian" and scenario.design.number_of_samples >= evaluations:
         yield "$.budget.evaluations", f"the design takes all {evaluations} evaluations; no model is ever fitted."
+    if (begins_with := BEGINNING.get(scenario.optimizer.type)) and scenario.optimizer.options[
+        begins_with
+    ] >= evaluations:
+        text = f"{begins_with} takes all {evaluations} evaluations; {scenario.optimizer.type} never begins."
+        yield "$.budget.evaluations", text
     size = math.prod(_n_levels(parameter) for parameter in scenario.parameters)
     if size < evaluations:
         yield "$.budget.evaluations", f"there are only {size:.0f} configurations; the run ends after them."

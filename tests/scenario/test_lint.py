@@ -144,6 +144,16 @@ def test_decades_on_a_linear_scale_are_named() -> None:
     assert warnings_for("rate", parameter_type="real", values=[1e-5, 1], scale="log") == []
 
 
+def test_a_maximizer_that_gives_way_is_named() -> None:
+    (warning,) = warnings(maximizer="cma_es", input_parameters={"n": {"parameter_type": "integer", "values": [0, 999]}})
+    assert warning == "$.maximizer.type: 'n' is not real; local_search takes the place of cma_es."
+
+
+def test_a_search_that_never_begins_is_named() -> None:
+    (warning,) = warnings(optimizer="evolutionary", budget={"evaluations": 12})
+    assert warning == "$.budget.evaluations: population_size takes all 12 evaluations; evolutionary never begins."
+
+
 def test_priors_that_nothing_uses_are_named() -> None:
     priors = [{"type": "mixture", "components": [{"mean": {"x": 5}, "std": {"x": 1}}]}]
     (warning,) = warnings(priors=priors, design_of_experiment="sobol", optimizer="random_search")
