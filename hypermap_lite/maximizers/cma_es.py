@@ -15,7 +15,7 @@ from hypermap_lite.maximizers.base import (
     choose_starts,
     draw_candidates,
 )
-from hypermap_lite.maximizers.evolution_strategy import EvolutionStrategy, load_cma
+from hypermap_lite.maximizers.evolution_strategy import EvolutionStrategy, require_cma
 from hypermap_lite.maximizers.local_search import LocalSearch
 from hypermap_lite.typing import FloatArray
 
@@ -50,10 +50,10 @@ class CmaEs:
     def __post_init__(self) -> None:
         check_options(self.candidates, self.starts)
         positive_number(self.sigma, "$.sigma", "the standard deviation")
+        require_cma()
 
     def maximize(self, problem: MaximizationProblem) -> Maximum | None:
         """Return the best new point found; None if the space holds no other."""
-        load_cma()
         if not problem.space.is_continuous.all():
             return LocalSearch(candidates=self.candidates, starts=max(self.starts, 4)).maximize(problem)
         X = draw_candidates(problem, self.candidates)

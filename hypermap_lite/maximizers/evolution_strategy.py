@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,8 @@ class EvolutionStrategy:
         tolerance: float = TOLERANCE,
         smallest_steps: FloatArray | None = None,
     ) -> None:
+        import cma  # slow to import, and an extra
+
         self.rng = rng
         options: dict[str, Any] = {
             "bounds": [0.0, 1.0],
@@ -69,7 +72,7 @@ class EvolutionStrategy:
             options["minstd"] = smallest_steps
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            self._strategy = load_cma().CMAEvolutionStrategy(np.clip(start, 0.0, 1.0), sigma, options)
+            self._strategy = cma.CMAEvolutionStrategy(np.clip(start, 0.0, 1.0), sigma, options)
 
     @property
     def population(self) -> int:
@@ -94,17 +97,8 @@ class EvolutionStrategy:
             self._strategy.tell(list(X), list(values))
 
 
-def load_cma() -> Any:
-    """Return the package ``cma``.
-
-    Raises
-    ------
-    ScenarioError
-        If it is not installed.
-    """
-    try:
-        import cma  # slow to import, and an extra
-    except ImportError:
+def require_cma() -> None:
+    """Raise a `ScenarioError` if the package ``cma`` is not installed; does not load it, which is slow."""
+    if find_spec("cma") is None:
         hint = 'Install it by: pip install "hypermap-lite[cma]"'
-        raise ScenarioError("$.type", "it needs the package cma, which is not installed", hint=hint) from None
-    return cma
+        raise ScenarioError("$.type", "it needs the package cma, which is not installed", hint=hint)

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from hypermap_lite.errors import ScenarioError, positive_number
-from hypermap_lite.maximizers.evolution_strategy import EvolutionStrategy, load_cma
+from hypermap_lite.maximizers.evolution_strategy import EvolutionStrategy, require_cma
 from hypermap_lite.optimizers.fitness import check_weights
 from hypermap_lite.optimizers.model_free import SearchState
 from hypermap_lite.optimizers.streams import Stream
@@ -64,7 +64,7 @@ class CmaEs:
                     allowed="real, integer and ordinal parameters",
                     hint="Take the optimizer 'evolutionary' or 'local_search'.",
                 )
-        load_cma()
+        require_cma()
 
     def next_point(self, state: SearchState) -> FloatArray | None:
         """Return a new point of the current distribution; None if it has none left."""

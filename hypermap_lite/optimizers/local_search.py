@@ -84,9 +84,10 @@ class HillClimbing:
             around = self._neighbours(state, x, trial, step)
             keys = state.space.keys(around)
             better = [i for i, k in enumerate(keys) if k in known and known[k][1] < value]
-            new = [i for i, k in enumerate(keys) if k not in state.taken]
-            if new and (self.improvement == "best" or not better or new[0] < better[0]):
-                return around[new[0]]
+            end = better[0] if better and self.improvement == "first" else len(keys)
+            for i in range(end):
+                if keys[i] not in state.taken and state.is_new(around[i]):
+                    return around[i]
             if not better:
                 return None
             chosen = better[0] if self.improvement == "first" else min(better, key=lambda i: known[keys[i]][1])

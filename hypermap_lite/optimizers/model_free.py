@@ -54,8 +54,9 @@ class SearchState:
         return generator(self.seed, stream, *numbers)
 
     def is_new(self, x: FloatArray) -> bool:
-        """Tell whether a point, shape (d,), is a configuration that was never suggested."""
-        return self.space.keys(x[None])[0] not in self.taken
+        """Tell whether a point, shape (d,), is a legal configuration that was never suggested."""
+        is_taken = self.space.keys(x[None])[0] in self.taken
+        return not is_taken and self.space.contains(self.space.decode(x[None])[0])
 
 
 class Search(Protocol):

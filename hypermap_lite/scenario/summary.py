@@ -90,15 +90,17 @@ def _method(scenario: Scenario) -> list[str]:
     total = scenario.budget.evaluations
     n = min(scenario.design.number_of_samples, total)
     lines = [f"evaluations 1 to {n}: {scenario.design.type}"]
+    acquisition, m = scenario.acquisition, len(scenario.objectives)
     if scenario.optimizer.type != "bayesian":
-        return [*lines, f"evaluations {n + 1} to {total}: {scenario.optimizer.type}"] if n < total else lines
-    acquisition = scenario.acquisition
+        lines += [f"evaluations {n + 1} to {total}: {_component(scenario.optimizer)}"] * (n < total)
+        if m > 1 and scenario.optimizer.type in ("local_search", "cma_es"):
+            lines.append(f"{m} objectives: {_component(acquisition.scalarization)} with fixed weights")
+        return lines
     if n < total:
         chosen = f"{_component(acquisition.function)} on a {_component(scenario.surrogate)}"
         lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
     if epsilon := scenario.optimizer.options.get("epsilon"):
         lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
-    m = len(scenario.objectives)
     if m > 1:
         weights = f"{_component(acquisition.scalarization)} with weights from {_component(acquisition.weights)}"
         lines.append(f"{m} objectives: {weights}")

@@ -96,7 +96,9 @@ def test_draws_of_thompson_sampling_differ(surrogate: str) -> None:
     X = rng.random((20, 2))
     Y = (X**2).sum(axis=1, keepdims=True)
     posterior = SURROGATES[surrogate]().fit(X, Y, is_ordered=np.ones(2, bool), rng=rng)
-    context = replace(context_of(posterior, "linear"), X=X, Y=Y, weights=np.ones(1))
+    context = replace(
+        context_of(posterior, "linear"), X=X, Y=Y, weights=np.ones(1), normalization=Normalization.of_front(Y)
+    )
     where = rng.random((50, 2))
     draws = [
         ACQUISITIONS["thompson_sampling"]().scorer(replace(context, rng=np.random.default_rng(i)))(where)

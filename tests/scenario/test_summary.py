@@ -82,3 +82,26 @@ def test_a_density_says_what_it_rests_on() -> None:
 def test_a_uniform_range_shows_its_ends() -> None:
     x = GOOD["input_parameters"]["x"] | {"prior": {"type": "uniform", "low": 2}}
     assert "uniform(low=2)" in page(input_parameters={"x": x})
+
+
+def test_a_search_is_shown_with_its_options_and_its_one_trade_off() -> None:
+    text = page(optimizer={"type": "local_search", "weights": [1, 2]}, budget={"evaluations": 20})
+    assert "evaluations 11 to 20: local_search(random_points=10, weights=[1, 2], improvement=first)" in text
+    assert "2 objectives: tchebyshev(rho=0.05) with fixed weights" in text
+
+
+def test_bopro_takes_the_place_of_the_acquisition_function() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+    text = page(priors=priors, acquisition={"prior_weighting": "bopro"})
+    assert (
+        "bopro(model_weight=10, good_quantile=0.05, floor=0.01) takes the place of noisy_expected_improvement" in text
+    )
+
+
+def test_a_grid_of_given_levels_is_as_large_as_it_is() -> None:
+    parameters = {
+        "r": {"parameter_type": "real", "values": [0, 1], "parameter_default": 0.3},
+        "n": {"parameter_type": "integer", "values": [3, 5]},
+    }
+    text = page(input_parameters=parameters, design_of_experiment={"type": "grid", "levels": 4})
+    assert "evaluations 1 to 13: grid" in text
