@@ -9,7 +9,7 @@ import numpy as np
 
 from hypermap_lite.errors import ScenarioError, finite_number
 from hypermap_lite.scalarization.base import Normalization, Scalarization
-from hypermap_lite.typing import BoolArray, FloatArray
+from hypermap_lite.typing import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,7 +25,7 @@ class Fitness:
 
     def __call__(self, Y: FloatArray) -> FloatArray:
         """Return the fitness of n evaluations, shape (n, m) to (n,); infinite where an objective is."""
-        usable: BoolArray = np.isfinite(Y).all(axis=1)
+        usable = np.asarray(np.isfinite(Y).all(axis=1))
         fitness = np.full(len(Y), np.inf)
         if usable.any():
             first = Y[: self.n_reference][usable[: self.n_reference]]
