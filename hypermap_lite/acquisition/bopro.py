@@ -68,27 +68,32 @@ class Bopro:
     ) -> BoproScorer:
         """Become the scorer of one suggestion; pending points count as evaluated at their predicted means."""
         posterior = context.posterior.believe(context.X_pending)
+        known = context.Y
+        if len(context.X_pending):
+            known = np.vstack([known, context.posterior.predict(context.X_pending).mean])
         good: Scorer
-        if context.Y.shape[1] == 1:
-            threshold = float(np.quantile(context.Y[:, 0], self.good_quantile))
+        if known.shape[1] == 1:
             good = LogOddsBelow(
                 field=posterior.field,
-                threshold=threshold,
+                threshold=self._threshold(known[:, 0]),
                 resolution=SMOOTHING * float(context.normalization.scale[0]),
                 is_differentiable=posterior.is_differentiable,
             )
         else:
-            scalars = context.scalarization(context.normalization(context.Y), context.weights)
             good = SampledLogOddsBelow(
                 field=posterior.field,
-                threshold=float(np.quantile(scalars, self.good_quantile)),
-                normal=quasi_normal(SAMPLES, context.Y.shape[1], context.rng),
+                threshold=self._threshold(context.scalarization(context.normalization(known), context.weights)),
+                normal=quasi_normal(SAMPLES, known.shape[1], context.rng),
                 scalarization=context.scalarization,
                 weights=context.weights,
                 normalization=context.normalization,
                 is_differentiable=posterior.is_differentiable,
             )
         return BoproScorer(good=good, prior=prior, model_share=1.0 / weight, floor=self.floor)
+
+    def _threshold(self, values: FloatArray) -> float:
+        """Return below what an objective is good: an observed value, so that no known place is far below it."""
+        return float(np.quantile(values, self.good_quantile, method="inverted_cdf"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

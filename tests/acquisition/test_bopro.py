@@ -1,5 +1,7 @@
 """BOPrO."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import norm
@@ -47,7 +49,7 @@ def test_the_score_is_the_sum_of_both_log_odds_weighted_by_t_over_b() -> None:
     by_prior = np.log(0.01 + 0.99 * d) - np.log(0.01 + 0.99 * (1 - d))
     c = ctx.posterior.predict(Z)
     resolution = 0.01 * np.ptp(Y[:, 0])
-    z = (np.quantile(Y[:, 0], 0.05) - c.mean[:, 0]) / np.hypot(c.std[:, 0], resolution)
+    z = (np.quantile(Y[:, 0], 0.05, method="inverted_cdf") - c.mean[:, 0]) / np.hypot(c.std[:, 0], resolution)
     by_model = norm.logcdf(z) - norm.logcdf(-z)
     assert scorer(ctx, weight=weight)(Z) == pytest.approx(by_prior + 0.4 * by_model, rel=1e-6)
 
@@ -95,6 +97,16 @@ def test_gradients_agree_with_finite_differences(n_objectives: int, scalarizatio
     for j, e in enumerate(1e-6 * np.eye(2)):
         numeric = (at(Z + e) - at(Z - e)) / 2e-6
         assert gradient[:, j] == pytest.approx(numeric, rel=2e-2, abs=1e-3 * max(1.0, np.abs(gradient).max()))
+
+
+@pytest.mark.parametrize("n_objectives", [1, 2])
+def test_a_pending_point_is_less_worth_trying_again(n_objectives: int) -> None:
+    free = context("gaussian_process", Y=Y[:, :n_objectives])
+    many = RNG.random((500, 2))
+    candidate = many[[np.argmax(scorer(free)(many))]]
+    around = np.clip(candidate + 1e-3, 0, 1)
+    taken = scorer(replace(free, X_pending=candidate, rng=np.random.default_rng(1)))
+    assert taken(around)[0] < scorer(replace(free, rng=np.random.default_rng(1)))(around)[0]
 
 
 @pytest.mark.parametrize("n_objectives", [1, 2])
