@@ -24,12 +24,10 @@ from hypermap_lite.optimizers.sampling import SamplingOptimizer, SamplingPhase
 from hypermap_lite.priors import JOINT_PRIORS, PRIORS, AsJoint, Density, JointDensity, ProductPrior
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS, BoundingBox, WeightSampling
 from hypermap_lite.scenario.model import ComponentSpec, ParameterSpec, Scenario
-from hypermap_lite.space import (
-    PARAMETERS,
-    Parameter,
-    SearchSpace,
-)
+from hypermap_lite.space import PARAMETERS, Constraint, Parameter, SearchSpace
+from hypermap_lite.space.search_space import MAX_DRAWS
 from hypermap_lite.surrogates import SURROGATES
+from hypermap_lite.typing import Configuration
 
 Member = TypeVar("Member")
 
@@ -92,8 +90,56 @@ def build_parameter(spec: ParameterSpec) -> Parameter:
 
 
 def build_space(scenario: Scenario) -> SearchSpace:
-    """Make the search space."""
-    return SearchSpace(tuple(build_parameter(spec) for spec in scenario.parameters))
+    """Make the search space.
+
+    Raises
+    ------
+    ScenarioError
+        If a parameter or a constraint is not valid, or the default configuration does not meet all constraints.
+    """
+    parameters = tuple(build_parameter(spec) for spec in scenario.parameters)
+    space = SearchSpace(
+        parameters, tuple(_constraint(i, text, parameters) for i, text in enumerate(scenario.constraints))
+    )
+    if space.default is not None:
+        _check_default(space, space.default)
+    return space
+
+
+def _check_default(space: SearchSpace, default: Configuration) -> None:
+    for i in space.violated(default):
+        constraint = space.constraints[i]
+        values = ", ".join(f"{name} = {default[name]}" for name in space.names if name in constraint.names)
+        problem = f"the default configuration ({values}) does not meet it: {constraint.text}"
+        raise ScenarioError(f"$.constraints[{i}]", problem, allowed="constraints that the default meets")
+
+
+def _constraint(i: int, text: str, parameters: tuple[Parameter, ...]) -> Constraint:
+    try:
+        return Constraint(text, parameters)
+    except ScenarioError as error:
+        raise error.below(f"$.constraints[{i}]") from None
+
+
+def require_allowed(space: SearchSpace) -> None:
+    """Make sure that there is a configuration that meets all constraints.
+
+    Raises
+    ------
+    ScenarioError
+        If none is found.
+    """
+    if not space.constraints or len(space.known_point):
+        return
+    alone = (SearchSpace(space.parameters, (constraint,)) for constraint in space.constraints)
+    culprit = next((i for i, one in enumerate(alone) if not len(one.known_point)), None)
+    drawn = "" if space.n_configurations == 0 else f" among {MAX_DRAWS:,} random ones"
+    if culprit is None:
+        problem = f"no configuration{drawn} meets all {len(space.constraints)} constraints"
+        raise ScenarioError("$.constraints", problem, hint="Each alone can be met; drop or loosen one.")
+    problem = f"no configuration{drawn} meets it: {space.constraints[culprit].text}"
+    hint = "Loosen it, or give every parameter a default that meets it."
+    raise ScenarioError(f"$.constraints[{culprit}]", problem, hint=hint)
 
 
 def build_prior(scenario: Scenario, space: SearchSpace) -> ProductPrior:
@@ -161,6 +207,7 @@ def build_optimizer(scenario: Scenario, history: History | None = None) -> Optim
     """Make the optimizer, which goes on from the given history."""
     history = build_history(scenario) if history is None else history
     space = history.space
+    require_allowed(space)
     prior = build_prior(scenario, space)
     initial = InitialPhase(space, prior, build_design(scenario), scenario.design.number_of_samples, scenario.seed)
     if scenario.optimizer.type == "bayesian":

@@ -35,7 +35,7 @@ def execute(args: Namespace) -> int:
     ScenarioError
         If it cannot be run as written.
     """
-    from hypermap_lite.assembly import validate
+    from hypermap_lite.assembly import build_space, validate
     from hypermap_lite.errors import ScenarioError
     from hypermap_lite.scenario.lint import lint
     from hypermap_lite.scenario.summary import summarize
@@ -46,6 +46,6 @@ def execute(args: Namespace) -> int:
     except ScenarioError as error:
         raise error.within(scenario.origin_of(error.path)) from error
     print(json.dumps(scenario.canonical, indent=2, ensure_ascii=False) if args.json else summarize(scenario))
-    for warning in lint(scenario):
+    for warning in lint(scenario, build_space(scenario)):
         print(f"warning: {warning}", file=sys.stderr)
     return 0

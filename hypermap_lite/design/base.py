@@ -8,7 +8,8 @@ from typing import Protocol
 import numpy as np
 
 from hypermap_lite.priors.product import ProductPrior
-from hypermap_lite.space.search_space import SearchSpace
+from hypermap_lite.space.search_space import MAX_DRAWS, SearchSpace
+from hypermap_lite.space.walk import walk
 from hypermap_lite.typing import FloatArray, Rng
 
 MAX_ROUNDS = 100
@@ -22,7 +23,7 @@ class InitialDesign(Protocol):
     """Chooses the first points of a run."""
 
     def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
-        """Return up to n different legal points, shape (k, d) with k <= n.
+        """Return up to n different legal, allowed points, shape (k, d) with k <= n.
 
         Fewer than n only where a finite space, or a grid, has no more.
         """
@@ -30,7 +31,7 @@ class InitialDesign(Protocol):
 
 
 def distinct(space: SearchSpace, X: FloatArray, n: int, draw: Callable[[int], FloatArray], rng: Rng) -> FloatArray:
-    """Snap points to the space, drop repeats, and draw others until there are n, or the space is exhausted.
+    """Snap points to the space, drop repeats and what is not allowed, and draw others until there are n.
 
     Parameters
     ----------
@@ -49,21 +50,24 @@ def distinct(space: SearchSpace, X: FloatArray, n: int, draw: Callable[[int], Fl
     Returns
     -------
     FloatArray
-        Different legal points, shape (min(n, n_configurations), d).
+        Different legal, allowed points, shape (min(n, n_configurations), d). Where constraints leave next to nothing
+        of the space, the last of them come from steps around the others.
     """
 
     def uniform(k: int) -> FloatArray:
         return rng.random((k, space.dimension))
 
-    points = space.snap(X)
+    points = space.keep_allowed(space.snap(X))
     points = points[space.unseen(points, ())]
     for draw_more in (draw, uniform):
         for _ in range(MAX_ROUNDS):
             if len(points) >= min(n, space.n_configurations):
                 return points[:n]
-            more = np.vstack([points, space.snap(draw_more(n))])
+            more = np.vstack([points, space.draw(n, draw_more, MAX_DRAWS // MAX_ROUNDS)])
             points = more[space.unseen(more, ())]
     if space.n_configurations <= ENUMERATION_LIMIT:
         rest = np.vstack([points, space.enumerate()])
         points = rest[space.unseen(rest, ())]
+    elif space.constraints:
+        points = walk(space, points, n, rng)
     return points[:n]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hypermap_lite.design.base import ENUMERATION_LIMIT
+from hypermap_lite.design.base import ENUMERATION_LIMIT, distinct
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
@@ -23,7 +23,8 @@ class Grid:
 
     Without `levels` it is the finest grid of at most n points: all axes get the same number of levels, or all their own
     where they have fewer. With `levels`, real axes have that many and the others all their own; of more than n points
-    the first n in the shuffled order are taken.
+    the first n in the shuffled order are taken. Where constraints reject some, only the allowed points count; if no
+    grid has any, the points are random.
     """
 
     levels: int | None = None
@@ -35,7 +36,7 @@ class Grid:
 
     def check(self, space: SearchSpace) -> None:
         """Raise a `ScenarioError` if the grid has too many points to list."""
-        if self.levels is not None and (size := self._size(space, self.levels)) > ENUMERATION_LIMIT:
+        if self.levels is not None and (size := math.prod(_fixed(space, self.levels))) > ENUMERATION_LIMIT:
             allowed = f"at most {ENUMERATION_LIMIT} points"
             problem = f"the grid would have {min(size, UNIMAGINABLE):.3g} points"
             hint = "Take fewer levels, or another design."
@@ -44,33 +45,53 @@ class Grid:
     def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
         """Return up to n points of the grid, shape (k, d) with k <= n."""
         self.check(space)
-        counts = self._finest(space, n) if self.levels is None else self._fixed(space, self.levels)
-        axes = np.meshgrid(*self._axes(space, counts), indexing="ij")
-        return space.snap(rng.permutation(np.column_stack([axis.ravel() for axis in axes])))[:n]
+        X = _finest(space, n) if self.levels is None else _full(space, _fixed(space, self.levels))
+        if not len(X):
+            return distinct(space, X, n, lambda k: rng.random((k, space.dimension)), rng)
+        return rng.permutation(X)[:n]
 
-    def _finest(self, space: SearchSpace, n: int) -> list[int]:
-        """Return the numbers of levels of the finest grid of at most n points."""
 
-        def counts(levels: int) -> list[int]:
-            return [levels if p.n_levels is None else min(levels, p.n_levels) for p in space.parameters]
+def _finest(space: SearchSpace, n: int) -> FloatArray:
+    """Return all allowed points of the finest grid with at most n of them, shape (k, d)."""
 
-        levels = 1
-        while math.prod(counts(levels + 1)) <= n and math.prod(counts(levels + 1)) > math.prod(counts(levels)):
-            levels += 1
-        return counts(levels)
+    def size(levels: int) -> int:
+        return math.prod(_equal(space, levels))
 
-    def _fixed(self, space: SearchSpace, levels: int) -> list[int]:
-        return [levels if p.n_levels is None else p.n_levels for p in space.parameters]
+    levels = 1
+    while size(levels) < size(levels + 1) <= n:
+        levels += 1
+    X = _full(space, _equal(space, levels))
+    while space.constraints and size(levels) < size(levels + 1) <= ENUMERATION_LIMIT:
+        levels += 1
+        finer = _full(space, _equal(space, levels))
+        if len(X) and len(finer) > n:
+            break
+        X = finer
+    return X
 
-    def _size(self, space: SearchSpace, levels: int) -> int:
-        return math.prod(self._fixed(space, levels))
 
-    def _axes(self, space: SearchSpace, counts: list[int]) -> list[FloatArray]:
-        axes = []
-        for parameter, count in zip(space.parameters, counts, strict=True):
-            if count == parameter.n_levels:
-                axes.append(parameter.level_codes())
-                continue
-            spread = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
-            axes.append(parameter.snap(spread if parameter.is_ordered else (np.arange(count) + 0.5) / count))
-        return axes
+def _equal(space: SearchSpace, levels: int) -> list[int]:
+    """Return the numbers of levels of all axes if each has this many, or all its own where it has fewer."""
+    return [levels if p.n_levels is None else min(levels, p.n_levels) for p in space.parameters]
+
+
+def _fixed(space: SearchSpace, levels: int) -> list[int]:
+    """Return the numbers of levels of all axes if real ones have this many, and the others all their own."""
+    return [levels if p.n_levels is None else p.n_levels for p in space.parameters]
+
+
+def _full(space: SearchSpace, counts: list[int]) -> FloatArray:
+    """Return all allowed points of the grid with so many levels on each axis, shape (k, d)."""
+    axes = np.meshgrid(*_axes(space, counts), indexing="ij")
+    return space.keep_allowed(space.snap(np.column_stack([axis.ravel() for axis in axes])))
+
+
+def _axes(space: SearchSpace, counts: list[int]) -> list[FloatArray]:
+    axes = []
+    for parameter, count in zip(space.parameters, counts, strict=True):
+        if count == parameter.n_levels:
+            axes.append(parameter.level_codes())
+            continue
+        spread = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
+        axes.append(parameter.snap(spread if parameter.is_ordered else (np.arange(count) + 0.5) / count))
+    return axes

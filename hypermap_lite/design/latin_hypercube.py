@@ -21,6 +21,8 @@ MANY = 2**62
 class LatinHypercube:
     """One random point in each of n equal slices of every axis [1]_.
 
+    Where constraints reject some, points of further hypercubes take their place.
+
     References
     ----------
     .. [1] McKay, Beckman, Conover. A Comparison of Three Methods for Selecting Values of Input Variables in the
@@ -29,8 +31,14 @@ class LatinHypercube:
 
     def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
         """Return n different points, shape (n, d)."""
-        X = latin_hypercube(n, space.dimension, rng)
-        return distinct(space, X, n, lambda k: rng.random((k, space.dimension)), rng)
+
+        def hypercube(k: int) -> FloatArray:
+            return latin_hypercube(k, space.dimension, rng)
+
+        def uniform(k: int) -> FloatArray:
+            return rng.random((k, space.dimension))
+
+        return distinct(space, hypercube(n), n, hypercube if space.constraints else uniform, rng)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,6 +9,9 @@ from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import FloatArray, Rng
 
+OVERSAMPLING = 32
+"""Times as many points as are wanted are looked at where constraints reject some."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sobol:
@@ -21,7 +24,7 @@ class Sobol:
 
     def points(self, space: SearchSpace, prior: ProductPrior, n: int, rng: Rng) -> FloatArray:
         """Return n different points, shape (n, d)."""
-        X = sobol_points(n, space.dimension, rng)
+        X = sobol_points(OVERSAMPLING * n if space.constraints else n, space.dimension, rng)
         return distinct(space, X, n, lambda k: rng.random((k, space.dimension)), rng)
 
 

@@ -148,8 +148,9 @@ def differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[tuple[
     before, after = dict(_leaves("$", old)), dict(_leaves("$", new))
     for place in [*before, *(p for p in after if p not in before)]:
         values = before.get(place, MISSING), after.get(place, MISSING)
-        # null is the default everywhere, so an option that an older version did not have yet is no difference
-        if not _FREE.fullmatch(place) and values[0] != values[1] and set(values) != {MISSING, "null"}:
+        # null and no items are the default everywhere, so an option that an older version did not have yet is no
+        # difference
+        if not _FREE.fullmatch(place) and values[0] != values[1] and not set(values) <= {MISSING, "null", "[]"}:
             yield place, *values
     names = [list(scenario.get("input_parameters", ())) for scenario in (old, new)]
     if names[0] != names[1] and set(names[0]) == set(names[1]):

@@ -14,6 +14,7 @@ from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
+from hypermap_lite.space.walk import spread
 from hypermap_lite.typing import FloatArray, Rng
 
 PERTURBATIONS = 24
@@ -24,6 +25,9 @@ PERTURBATION_SCALES = (0.2, 0.05, 0.01)
 
 PRIOR_SHARE = 4
 """One prior draw per so many Sobol candidates, where there is a prior."""
+
+DRAWS = 16
+"""Times as many points as are wanted are drawn at most where constraints reject some."""
 
 SEPARATION = 0.05
 """Starts are at least this far apart, in the largest coordinate difference."""
@@ -64,7 +68,7 @@ class Maximizer(Protocol):
     """Options of the search."""
 
     def maximize(self, problem: MaximizationProblem) -> Maximum | None:
-        """Return the best legal point that has not been seen; None if the space holds no other."""
+        """Return the best legal, allowed point that has not been seen; None if the space holds no other."""
         ...
 
 
@@ -77,7 +81,7 @@ def check_options(candidates: int, starts: int) -> None:
 
 
 def draw_candidates(problem: MaximizationProblem, n: int) -> FloatArray:
-    """Return new legal points: Sobol, draws from the prior, and perturbed incumbents; all points of a small space.
+    """Return new legal, allowed points: Sobol, draws from the prior, perturbed incumbents; all of a small space.
 
     Returns
     -------
@@ -88,11 +92,13 @@ def draw_candidates(problem: MaximizationProblem, n: int) -> FloatArray:
     if space.n_configurations <= n:
         X = space.enumerate()
     else:
-        parts = [sobol_points(n, space.dimension, rng)]
+        parts = [space.draw(n, lambda k: sobol_points(k, space.dimension, rng), DRAWS * n)]
         if not problem.prior.is_uniform:
-            parts.append(problem.prior.sample(max(n // PRIOR_SHARE, 1), rng))
-        parts.append(perturb(problem.incumbents, rng))
-        X = space.snap(np.vstack(parts))
+            parts.append(space.draw(max(n // PRIOR_SHARE, 1), lambda k: problem.prior.sample(k, rng), DRAWS * n))
+        parts.append(space.keep_allowed(space.snap(perturb(problem.incumbents, rng))))
+        if space.constraints and len(parts[0]) < n:
+            parts.append(spread(space, n, rng))
+        X = np.vstack(parts)
     X = X[space.unseen(X, problem.seen)]
     if not len(X) and space.n_configurations <= ENUMERATION_LIMIT:
         X = space.enumerate()
@@ -120,8 +126,8 @@ def choose_starts(X: FloatArray, scores: FloatArray, n: int) -> FloatArray:
 
 
 def best_unseen(problem: MaximizationProblem, X: FloatArray, scores: FloatArray) -> Maximum | None:
-    """Return the best of n points that has not been seen, or None."""
-    new = problem.space.unseen(X, problem.seen)
+    """Return the best of n points that is allowed and has not been seen, or None."""
+    new = problem.space.unseen(X, problem.seen) & problem.space.is_allowed(X)
     if not new.any():
         return None
     i = int(np.flatnonzero(new)[np.argmax(scores[new])])

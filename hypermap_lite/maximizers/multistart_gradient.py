@@ -16,6 +16,7 @@ from hypermap_lite.maximizers.base import (
 )
 from hypermap_lite.maximizers.local_search import LocalSearch
 from hypermap_lite.maximizers.neighbours import climb
+from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import FloatArray
 
 MAX_ITERATIONS = 50
@@ -24,6 +25,9 @@ MAX_ITERATIONS = 50
 ROUNDS = 3
 """Alternations between real and discrete axes."""
 
+BISECTIONS = 30
+"""Halvings of the way from a start to a point beyond what is allowed."""
+
 WORST = -1e10
 """Stands for scores that are not finite."""
 
@@ -31,6 +35,8 @@ WORST = -1e10
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MultistartGradient:
     """The best of many candidates, refined by L-BFGS-B on the real axes and one-exchange steps on the others.
+
+    An ascent that leaves what constraints allow ends at their edge; steps on all axes go on from there.
 
     All starts are one problem, the sum of their scores, so that each step evaluates them together. A score without
     gradient is left to `LocalSearch`.
@@ -51,13 +57,16 @@ class MultistartGradient:
         if not problem.scorer.is_differentiable or not is_real.any():
             return LocalSearch(candidates=self.candidates, starts=self.starts).maximize(problem)
         X = draw_candidates(problem, self.candidates)
+        if not len(X):
+            return None
         scores = problem.score(X)
         refined = choose_starts(X, scores, self.starts)
-        for _ in range(1 if is_real.all() else ROUNDS):
+        stepped = np.ones_like(is_real) if problem.space.constraints else ~is_real
+        for _ in range(ROUNDS if stepped.any() else 1):
             before = refined
             refined = self._ascend(problem, refined)
-            if not is_real.all():
-                refined = np.array([climb(problem.space, problem.score, x, ~is_real)[0] for x in refined])
+            if stepped.any():
+                refined = np.array([climb(problem.space, problem.score, x, stepped)[0] for x in refined])
             if np.array_equal(before, refined):
                 break
         points = np.vstack([refined, X])
@@ -84,5 +93,21 @@ class MultistartGradient:
         )
         moved = starts.copy()
         moved[:, is_real] = np.clip(result.x, 0.0, 1.0).reshape(len(starts), -1)
+        moved = back_to_allowed(problem.space, starts, moved)
         better = problem.score(moved) > problem.score(starts)
         return np.where(better[:, None], moved, starts)
+
+
+def back_to_allowed(space: SearchSpace, starts: FloatArray, moved: FloatArray) -> FloatArray:
+    """Return k moved points, those not allowed drawn back towards their allowed starts, to the edge, shape (k, d)."""
+    is_outside = ~space.is_allowed(moved)
+    if not is_outside.any():
+        return moved
+    inside, outside = starts[is_outside], moved[is_outside]
+    for _ in range(BISECTIONS):
+        middle = (inside + outside) / 2
+        is_inside = space.is_allowed(middle)[:, None]
+        inside, outside = np.where(is_inside, middle, inside), np.where(is_inside, outside, middle)
+    drawn_back = moved.copy()
+    drawn_back[is_outside] = inside
+    return drawn_back

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import combinations
 
 import numpy as np
 
@@ -19,6 +20,9 @@ LEVEL_STEP_GROWTH = 4
 
 REAL_STEPS = (0.1, 0.03, 0.01, 0.003, 0.001)
 """Steps along an axis tried in both directions, in units of the cube."""
+
+SHORT_STEPS = (0.03, 0.003)
+"""Steps along two axes at once, each tried in both directions, in units of the cube."""
 
 MAX_MOVES = 100
 
@@ -40,14 +44,49 @@ def axis_neighbours(parameter: Parameter, code: float) -> FloatArray:
 
 
 def neighbours(space: SearchSpace, x: FloatArray, axes: BoolArray) -> FloatArray:
-    """Return all points one exchange away from x along the chosen axes, shape (k, d)."""
+    """Return all allowed points one exchange away from x along the chosen axes, shape (k, d).
+
+    With constraints also points two exchanges away, along pairs of axes that a constraint ties together.
+    """
     rows = []
     for j in np.flatnonzero(axes):
         codes = axis_neighbours(space.parameters[j], float(x[j]))
         moved = np.repeat(x[None], len(codes), axis=0)
         moved[:, j] = codes
         rows.append(moved)
-    return np.vstack(rows) if rows else np.empty((0, len(x)))
+    rows += [_both_moved(space, x, i, j) for i, j in _tied_pairs(space, axes)]
+    return space.keep_allowed(np.vstack(rows)) if rows else np.empty((0, len(x)))
+
+
+def _tied_pairs(space: SearchSpace, axes: BoolArray) -> list[tuple[int, int]]:
+    """Return the pairs of chosen axes that stand in one constraint."""
+    chosen = [int(j) for j in np.flatnonzero(axes)]
+    names = space.names
+    return [
+        (i, j)
+        for i, j in combinations(chosen, 2)
+        if any({names[i], names[j]} <= constraint.names for constraint in space.constraints)
+    ]
+
+
+def _both_moved(space: SearchSpace, x: FloatArray, i: int, j: int) -> FloatArray:
+    """Return the points that differ from x by a short step along both of two axes, shape (k, d)."""
+    a, b = (_short_steps(space.parameters[axis], float(x[axis])) for axis in (i, j))
+    moved = np.repeat(x[None], len(a) * len(b), axis=0)
+    moved[:, i], moved[:, j] = np.repeat(a, len(b)), np.tile(b, len(a))
+    return moved
+
+
+def _short_steps(parameter: Parameter, code: float) -> FloatArray:
+    """Return the codes of some close values of one axis, or of all other levels if they are few and without order."""
+    if parameter.n_levels is None:
+        return np.clip(code + np.array([sign * step for step in SHORT_STEPS for sign in (-1.0, 1.0)]), 0.0, 1.0)
+    level = int(parameter.level_index(np.array([code]))[0])
+    levels = np.array([level - 1, level + 1])
+    if parameter.n_levels <= FEW_LEVELS and not parameter.is_ordered:
+        levels = np.arange(parameter.n_levels)
+    levels = levels[(levels >= 0) & (levels < parameter.n_levels) & (levels != level)]
+    return parameter.codes_of_levels(levels)
 
 
 def climb(

@@ -33,6 +33,7 @@ def build_scenario(
         description=document["description"],
         seed=document["seed"],
         parameters=tuple(_parameter(name, entry) for name, entry in document["input_parameters"].items()),
+        constraints=tuple(document["constraints"]),
         joint_priors=tuple(_component(prior, f"$.priors[{i}]") for i, prior in enumerate(document["priors"])),
         objectives=tuple(_objective(entry) for entry in document["objectives"]),
         design=_design(document["design_of_experiment"]),

@@ -9,6 +9,7 @@ from typing import TypeAlias
 from hypermap_lite.scenario.command_lint import lint_command
 from hypermap_lite.scenario.defaults import BEGINNING
 from hypermap_lite.scenario.model import ParameterSpec, Scenario
+from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import Value
 
 Part: TypeAlias = tuple[Mapping[str, float], Mapping[str, float], float]
@@ -21,12 +22,18 @@ PRIOR_DESIGNS = ("prior_sampling", "prior_latin_hypercube")
 PRIOR_OPTIMIZERS = ("prior_sampling", "local_search", "evolutionary", "cma_es")
 """What draws from the priors."""
 
+RARELY_ALLOWED = 0.01
+"""Constraints that a smaller share of the space than this meets are worth a warning."""
+
 DECADES = 3
 """A linear parameter that spans at least so many decades is worth a warning."""
 
 
-def lint(scenario: Scenario) -> list[str]:
-    """Return warnings, one sentence or two each, with the place in the JSON in front."""
+def lint(scenario: Scenario, space: SearchSpace | None = None) -> list[str]:
+    """Return warnings, one sentence or two each, with the place in the JSON in front.
+
+    Those on constraints need the search space, which a scenario only describes.
+    """
     warnings = [
         *_levels(scenario),
         *_linear_decades(scenario),
@@ -35,7 +42,8 @@ def lint(scenario: Scenario) -> list[str]:
         *_unused_priors(scenario),
         *_maximizer(scenario),
         *_reference_points(scenario),
-        *_budget(scenario),
+        *_constraints(space),
+        *_budget(scenario, space),
         *_workers(scenario),
         *lint_command(scenario),
     ]
@@ -155,7 +163,16 @@ def _reference_points(scenario: Scenario) -> Iterator[tuple[str, str]]:
             yield f"$.objectives[{i}]", text
 
 
-def _budget(scenario: Scenario) -> Iterator[tuple[str, str]]:
+def _constraints(space: SearchSpace | None) -> Iterator[tuple[str, str]]:
+    if space is None or not space.constraints:
+        return
+    share = space.share_allowed()
+    if share < RARELY_ALLOWED:
+        how = "fewer than 0.1 %" if share < RARELY_ALLOWED / 10 else f"only {100 * share:.1f} %"
+        yield "$.constraints", f"{how} of uniform draws meet them; narrower ranges would be searched better."
+
+
+def _budget(scenario: Scenario, space: SearchSpace | None) -> Iterator[tuple[str, str]]:
     evaluations = scenario.budget.evaluations
     if scenario.optimizer.type == "bayesian" and scenario.design.number_of_samples >= evaluations:
         yield "$.budget.evaluations", f"the design takes all {evaluations} evaluations; no model is ever fitted."
@@ -164,7 +181,7 @@ def _budget(scenario: Scenario) -> Iterator[tuple[str, str]]:
     ] >= evaluations:
         text = f"{begins_with} takes all {evaluations} evaluations; {scenario.optimizer.type} never begins."
         yield "$.budget.evaluations", text
-    size = math.prod(_n_levels(parameter) for parameter in scenario.parameters)
+    size = math.prod(_n_levels(p) for p in scenario.parameters) if space is None else space.n_configurations
     if size < evaluations:
         yield "$.budget.evaluations", f"there are only {size:.0f} configurations; the run ends after them."
 

@@ -131,6 +131,9 @@ class Scenario:
     evaluator: EvaluatorSpec
     output: OutputSpec
     joint_priors: tuple[ComponentSpec, ...] = ()
+    constraints: tuple[str, ...] = ()
+    """Conditions over the parameters that every configuration meets, as the user wrote them."""
+
     seed: int = 0
     description: str = ""
     canonical: Mapping[str, Any] = field(default_factory=dict)

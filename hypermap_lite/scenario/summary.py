@@ -17,6 +17,7 @@ def summarize(scenario: Scenario) -> str:
     sections = {
         "experiment": _experiment(scenario),
         "parameters": _parameters(scenario.parameters),
+        "constraints": [*scenario.constraints],
         "priors": [line for prior in scenario.joint_priors for line in _joint_prior(prior)],
         "objectives": _objectives(scenario),
         "method": _method(scenario),

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from hypermap_lite.space.categorical import CategoricalParameter
+from hypermap_lite.space.constraint import Constraint
 from hypermap_lite.space.integer import IntegerParameter
 from hypermap_lite.space.ordinal import OrdinalParameter
 from hypermap_lite.space.parameter import Parameter
@@ -21,6 +22,7 @@ PARAMETERS: Final[Mapping[str, type[Parameter]]] = {
 __all__ = [
     "PARAMETERS",
     "CategoricalParameter",
+    "Constraint",
     "IntegerParameter",
     "OrdinalParameter",
     "Parameter",

@@ -16,6 +16,7 @@ from hypermap_lite.priors import (
     WeightsPrior,
 )
 from hypermap_lite.space import CategoricalParameter, IntegerParameter, OrdinalParameter, RealParameter, SearchSpace
+from tests.constrained import SPACES, space_of
 
 MIXED = SearchSpace(
     (
@@ -183,3 +184,43 @@ def test_a_grid_too_large_to_list_is_refused() -> None:
         DESIGNS["grid"](levels=10).check(space)
     with pytest.raises(ScenarioError, match="levels"):
         DESIGNS["grid"](levels=1)
+
+
+@every_design
+@pytest.mark.parametrize("constrained", SPACES)
+@pytest.mark.parametrize("n", [1, 12])
+def test_points_meet_the_constraints(name: str, constrained: str, n: int) -> None:
+    space = space_of(constrained)
+    X = points(name, space, n)
+    assert np.array_equal(space.snap(X), X)
+    assert space.is_allowed(X).all()
+    assert space.unseen(X, ()).all()
+    least = min(n, space.n_configurations) if name != "grid" else 1
+    assert least <= len(X) <= n
+
+
+@every_design
+def test_a_finite_constrained_space_is_exhausted_without_repeats(name: str) -> None:
+    space = space_of("sum")
+    X = points(name, space, 100)
+    assert len(X) == space.n_configurations
+    assert space.unseen(X, ()).all()
+
+
+def test_a_grid_keeps_most_of_what_it_may_where_constraints_reject_some() -> None:
+    X = points("grid", space_of("half"), 30)
+    assert 22 <= len(X) <= 30
+    assert len(np.unique(np.diff(np.unique(X[:, 0])).round(9))) == 1
+
+
+def test_sobol_points_stay_evenly_spread_where_constraints_reject_some() -> None:
+    X = points("sobol", space_of("half"), 64)
+    assert (X[:, 0] < X[:, 1]).mean() == pytest.approx(0.5, abs=0.08)
+
+
+def test_prior_sampling_draws_from_the_prior_given_the_constraints() -> None:
+    space = space_of("half")
+    prior = ProductPrior(2, (((0,), AsJoint(GaussianPrior(mean=0.9, std=0.05).on(space.parameters[0]))),))
+    X = DESIGNS["prior_sampling"]().points(space, prior, 500, np.random.default_rng(0))
+    assert (X.sum(axis=1) <= 1).all()
+    assert np.quantile(X[:, 0], [0.02, 0.98]) == pytest.approx([0.75, 0.94], abs=0.05)  # pulled below 0.9

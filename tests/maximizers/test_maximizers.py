@@ -7,6 +7,7 @@ from hypermap_lite.errors import ScenarioError
 from hypermap_lite.maximizers import MAXIMIZERS, MaximizationProblem
 from hypermap_lite.priors import AsJoint, GaussianPrior, ProductPrior
 from hypermap_lite.space import CategoricalParameter, IntegerParameter, OrdinalParameter, RealParameter, SearchSpace
+from tests.constrained import SPACES, space_of
 
 REAL = SearchSpace(tuple(RealParameter(name=f"r{i}", low=0, high=1) for i in range(3)))
 MIXED = SearchSpace(
@@ -146,3 +147,46 @@ def test_scores_that_are_not_finite_are_survived(name: str, value: float) -> Non
 def test_impossible_options_are_refused(name: str, options: dict) -> None:
     with pytest.raises(ScenarioError, match=next(iter(options))):
         MAXIMIZERS[name](**options)
+
+
+@every_maximizer
+@pytest.mark.parametrize("constrained", SPACES)
+@pytest.mark.parametrize("is_differentiable", [True, False])
+def test_the_point_found_meets_the_constraints(name: str, constrained: str, is_differentiable: bool) -> None:
+    space = space_of(constrained)
+    scorer = Bowl(np.full(space.dimension, 0.9), is_differentiable=is_differentiable)
+    found = MAXIMIZERS[name](candidates=64, starts=2).maximize(problem(space, scorer))
+    assert found is not None
+    assert space.is_allowed(found.x[None]).all()
+    assert space.contains(space.decode(found.x[None])[0])
+
+
+@every_maximizer
+@pytest.mark.parametrize("is_differentiable", [True, False])
+def test_a_maximum_beyond_the_constraint_is_found_at_its_edge(name: str, is_differentiable: bool) -> None:
+    scorer = Bowl(np.array([0.9, 0.6]), is_differentiable=is_differentiable)
+    found = MAXIMIZERS[name]().maximize(problem(space_of("half"), scorer))
+    assert found is not None
+    assert found.x == pytest.approx([0.65, 0.35], abs=0.02)
+
+
+@every_maximizer
+@pytest.mark.parametrize("candidates", [4, 1024])
+def test_an_equality_between_levels_does_not_hide_the_maximum(name: str, candidates: int) -> None:
+    space = space_of("sum")
+    (centre,) = space.encode([{"k": 5, "l": 4, "m": 0}])
+    found = MAXIMIZERS[name](candidates=candidates).maximize(problem(space, Bowl(centre)))
+    assert found is not None
+    assert space.decode(found.x[None]) == [{"k": 5, "l": 4, "m": 0}]
+
+
+@every_maximizer
+def test_an_exhausted_constrained_space_gives_nothing(name: str) -> None:
+    space = space_of("sum")
+    seen = tuple(space.keys(space.enumerate()))
+    for candidates in (4, 1024):
+        maximizer = MAXIMIZERS[name](candidates=candidates)
+        assert maximizer.maximize(problem(space, Bowl(np.full(3, 0.5)), seen=seen)) is None
+        last = maximizer.maximize(problem(space, Bowl(np.full(3, 0.5)), seen=seen[1:]))
+        assert last is not None
+        assert space.keys(last.x[None])[0] == seen[0]
