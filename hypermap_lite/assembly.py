@@ -76,6 +76,8 @@ def build_parameter(spec: ParameterSpec) -> Parameter:
     options: dict[str, Any] = {"name": spec.name, "default": spec.parameter_default}
     if spec.parameter_type in ("real", "integer"):
         options |= {"low": spec.values[0], "high": spec.values[1], "log": spec.scale == "log"}
+    elif spec.parameter_type == "permutation":
+        options |= {"size": spec.values[0], "kernel": spec.kernel}
     else:
         options["values"] = spec.values
     try:

@@ -6,8 +6,11 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-Value: TypeAlias = float | int | str
-"""One parameter's value as the user writes it."""
+Level: TypeAlias = float | int | str
+"""A number or a name, such as a bound or a level of a parameter."""
+
+Value: TypeAlias = Level | tuple[int, ...]
+"""One parameter's value as the user writes it; a permutation as a tuple."""
 
 Configuration: TypeAlias = Mapping[str, Value]
 """One point of the search space in the user's values, keyed by parameter name."""

@@ -50,5 +50,7 @@ def unknown_placeholders(arguments: Iterable[str], parameters: Iterable[str]) ->
 
 
 def as_argument(value: Value) -> str:
-    """Return a parameter's value as a program reads it; floats by their shortest exact text."""
+    """Return a parameter's value as a program reads it: floats by their shortest exact text, ``0 2 1`` for an order."""
+    if isinstance(value, tuple):
+        return " ".join(map(str, value))
     return repr(float(value)) if isinstance(value, float) else str(value)

@@ -15,7 +15,9 @@ from pathlib import Path
 from typing import TypeVar
 
 from hypermap_lite.errors import RunFolderError
+from hypermap_lite.evaluation.placeholders import as_argument
 from hypermap_lite.space.parameter import Parameter
+from hypermap_lite.space.permutation import PermutationParameter
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import Configuration, Value
 
@@ -88,6 +90,8 @@ def format_value(parameter: Parameter, value: Value) -> str:
     """Return a parameter's value as text that `parse_value` turns into an equal one."""
     if isinstance(value, str):
         return value
+    if isinstance(value, tuple | list):
+        return as_argument(value)
     is_whole = parameter.n_levels is not None and float(value).is_integer()
     return str(int(value)) if is_whole else repr(float(value))
 
@@ -100,6 +104,8 @@ def parse_value(parameter: Parameter, text: str) -> Value:
     ValueError
         If the parameter has no such value.
     """
+    if isinstance(parameter, PermutationParameter):
+        return parameter.parse(text)
     levels: Sequence[Value] | None = getattr(parameter, "values", None)
     value: Value
     if levels is not None:

@@ -23,6 +23,9 @@ PERTURBATIONS = 24
 PERTURBATION_SCALES = (0.2, 0.05, 0.01)
 """Standard deviations of the perturbations, in units of the cube, used in turn."""
 
+MAX_SWAPS = 3
+"""Random swaps that perturb a permutation, at most."""
+
 PRIOR_SHARE = 4
 """One prior draw per so many Sobol candidates, where there is a prior."""
 
@@ -95,7 +98,7 @@ def draw_candidates(problem: MaximizationProblem, n: int) -> FloatArray:
         parts = [space.draw(n, lambda k: sobol_points(k, space.dimension, rng), DRAWS * n)]
         if not problem.prior.is_uniform:
             parts.append(space.draw(max(n // PRIOR_SHARE, 1), lambda k: problem.prior.sample(k, rng), DRAWS * n))
-        parts.append(space.keep_allowed(space.snap(perturb(problem.incumbents, rng))))
+        parts.append(space.keep_allowed(space.snap(perturb(problem.incumbents, rng, space))))
         if space.constraints and len(parts[0]) < n:
             parts.append(spread(space, n, rng))
         X = np.vstack(parts)
@@ -106,12 +109,19 @@ def draw_candidates(problem: MaximizationProblem, n: int) -> FloatArray:
     return X
 
 
-def perturb(points: FloatArray, rng: Rng) -> FloatArray:
-    """Return Gaussian perturbations of k points, of all coordinates or a random half, shape (k * PERTURBATIONS, d)."""
+def perturb(points: FloatArray, rng: Rng, space: SearchSpace) -> FloatArray:
+    """Return Gaussian perturbations of k points, of all coordinates or a random half, shape (k * PERTURBATIONS, d).
+
+    Permutations are perturbed by one to three random swaps.
+    """
     X = np.repeat(points, PERTURBATIONS, axis=0)
     scales = np.resize(PERTURBATION_SCALES, len(X))[:, None]
     moved = rng.random(X.shape) < rng.choice([0.5, 1.0], size=(len(X), 1))
-    return np.clip(X + scales * moved * rng.standard_normal(X.shape), 0.0, 1.0)
+    perturbed = np.clip(X + scales * moved * rng.standard_normal(X.shape), 0.0, 1.0)
+    for j, parameter in space.permutations.items():
+        n_swaps = np.where(moved[:, j], rng.integers(1, MAX_SWAPS + 1, size=len(X)), 0)
+        perturbed[:, j] = parameter.swap(X[:, j], n_swaps, rng)
+    return perturbed
 
 
 def choose_starts(X: FloatArray, scores: FloatArray, n: int) -> FloatArray:

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from hypermap_lite.space.parameter import Parameter
+from hypermap_lite.space.permutation import PermutationParameter
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import BoolArray, FloatArray
 
@@ -29,6 +30,8 @@ MAX_MOVES = 100
 
 def axis_neighbours(parameter: Parameter, code: float) -> FloatArray:
     """Return the codes one exchange away from a code on one axis, both directions, shape (k,)."""
+    if isinstance(parameter, PermutationParameter):
+        return parameter.neighbours(code)
     steps = np.array([sign * step for step in REAL_STEPS for sign in (-1.0, 1.0)])
     around = np.unique(np.clip(code + steps, 0.0, 1.0))
     if parameter.n_levels is None:
@@ -81,6 +84,8 @@ def _short_steps(parameter: Parameter, code: float) -> FloatArray:
     """Return the codes of some close values of one axis, or of all other levels if they are few and without order."""
     if parameter.n_levels is None:
         return np.clip(code + np.array([sign * step for step in SHORT_STEPS for sign in (-1.0, 1.0)]), 0.0, 1.0)
+    if isinstance(parameter, PermutationParameter):
+        return parameter.neighbours(code)
     level = int(parameter.level_index(np.array([code]))[0])
     levels = np.array([level - 1, level + 1])
     if parameter.n_levels <= FEW_LEVELS and not parameter.is_ordered:

@@ -209,8 +209,10 @@ class BayesianOptimizer(Optimizer):
 
     def _fit_from(self, X: FloatArray, Y: FloatArray, start: Any) -> Posterior:
         rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
-        is_ordered = self.history.space.is_ordered
-        return self._method.surrogate.fit(X, Y, is_ordered=is_ordered, rng=rng, start=start)
+        space = self.history.space
+        return self._method.surrogate.fit(
+            X, Y, is_ordered=space.is_ordered, rng=rng, start=start, permutations=space.permutations
+        )
 
 
 def milestones(n: int) -> Iterator[int]:

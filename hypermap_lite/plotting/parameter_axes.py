@@ -83,6 +83,8 @@ def name_with_scale(parameter: Parameter) -> str:
 
 def text_of(value: Value, digits: int = 4) -> str:
     """Write a value for people, with a true minus sign and so many significant digits."""
+    if isinstance(value, tuple):
+        return " ".join(map(str, value))
     return value if isinstance(value, str) else number(value, digits).replace("-", "\N{MINUS SIGN}")
 
 
@@ -96,7 +98,7 @@ def ticks(parameter: Parameter) -> tuple[FloatArray, list[str]]:
         values = _round_numbers(parameter)
         return np.array([parameter.locate(value) for value in values]), _texts_of(values, alike=not parameter.log)
     step = 1 if isinstance(parameter, CategoricalParameter) else math.ceil((n or 1) / MAX_TICKS)
-    codes = parameter.level_codes()[::step]
+    codes = parameter.codes_of_levels(np.arange(0, n or 0, step))
     return codes, [text_of(value) for value in parameter.decode(codes)]
 
 

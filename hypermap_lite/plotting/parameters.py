@@ -306,6 +306,9 @@ def _write_level(axes: Axes, place: float, height: float, text: str) -> None:
 
 def _fitting(value: Value, spacing: float) -> str:
     """Write a value for people with as many digits, four at most, as fit between two axes."""
+    if isinstance(value, tuple):
+        text, n = text_of(value), max(3, int(spacing / DIGIT_WIDTH))
+        return text if len(text) <= n else text[: n - 1] + "…"
     texts = [text_of(value, digits) for digits in (4, 3, 2)]
     for decimals in (1, 0):
         mantissa, _, exponent = f"{value:.{decimals}e}".partition("e")

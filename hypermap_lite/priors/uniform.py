@@ -63,12 +63,12 @@ class UniformPrior:
         """Return the ends on the axis of an ordinal parameter."""
         edges = axis.bin_edges()
         values = axis.decode((edges[:-1] + edges[1:]) / 2)
-        if any(isinstance(value, str) for value in values):
+        if any(isinstance(value, str | tuple) for value in values):
             problem = f"'{axis.name}' has no order for a range"
             raise ScenarioError("$", problem, allowed="a uniform prior without low and high", hint="Give it weights.")
         low = -math.inf if self.low is None else self.low
         high = math.inf if self.high is None else self.high
-        inside = [i for i, value in enumerate(values) if low <= float(value) <= high]
+        inside = [i for i, value in enumerate(values) if not isinstance(value, tuple) and low <= float(value) <= high]
         return (float(edges[inside[0]]), float(edges[inside[-1] + 1])) if inside else (0.0, 0.0)
 
 

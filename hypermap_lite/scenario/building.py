@@ -60,11 +60,14 @@ def _parameter(name: str, entry: Mapping[str, Any]) -> ParameterSpec:
     path, values, default = f"$.input_parameters.{name}", entry["values"], entry["parameter_default"]
     if entry["parameter_type"] == "real":
         values, default = map(float, values), None if default is None else float(default)
+    if isinstance(default, list):
+        default = tuple(default)
     return ParameterSpec(
         name=name,
         parameter_type=entry["parameter_type"],
         values=tuple(values),
         scale=entry.get("scale", "linear"),
+        kernel=entry.get("kernel", "spearman"),
         parameter_default=default,
         prior=_component(entry["prior"], f"{path}.prior") if entry["prior"] else None,
         description=entry["description"],

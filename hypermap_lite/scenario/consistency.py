@@ -19,6 +19,7 @@ RESERVED_NAMES: Final = RESERVED_COLUMNS | {"feasible"}
 def check_consistency(document: Mapping[str, Any]) -> None:
     """Raise a `ScenarioError` at the first contradiction between the sections of a filled document."""
     _check_names(document["input_parameters"], document["objectives"])
+    _check_permutations(document["input_parameters"])
     _check_joint_priors(document["input_parameters"], document["priors"])
     _check_limits(document)
     _check_budget(document)
@@ -41,6 +42,14 @@ def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str
         if name in RESERVED_NAMES or name in standard_errors:
             problem = f"'{name}' is the name of a column of the result files"
             raise ScenarioError(path, problem, allowed="any other name", hint=f"Call it '{name}_value', say.")
+
+
+def _check_permutations(parameters: Mapping[str, Any]) -> None:
+    for name, parameter in parameters.items():
+        if parameter["parameter_type"] == "permutation" and has_belief(parameter):
+            problem = f"'{name}' is a permutation, which has no {parameter['prior']['type']} prior"
+            hint = "A kde among the joint priors can speak of it."
+            raise ScenarioError(f"$.input_parameters.{name}.prior", problem, allowed="uniform", hint=hint)
 
 
 def _check_joint_priors(parameters: Mapping[str, Any], priors: Sequence[Mapping[str, Any]]) -> None:

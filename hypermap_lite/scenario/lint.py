@@ -132,7 +132,8 @@ def single_points(scenario: Scenario) -> Iterator[tuple[str, str]]:
 
 
 def _distinct(points: Mapping[str, list[Value]], weights: list[float] | None) -> set[tuple[Value, ...]]:
-    rows = list(zip(*points.values(), strict=False))
+    columns = [[tuple(v) if isinstance(v, list) else v for v in column] for column in points.values()]
+    rows = list(zip(*columns, strict=False))
     return {row for row, weight in zip(rows, weights or [1.0] * len(rows), strict=False) if weight}
 
 
@@ -189,6 +190,8 @@ def _budget(scenario: Scenario, space: SearchSpace | None) -> Iterator[tuple[str
 def _n_levels(parameter: ParameterSpec) -> float:
     if parameter.parameter_type == "integer":
         return float(parameter.values[1]) - float(parameter.values[0]) + 1
+    if parameter.parameter_type == "permutation":
+        return math.factorial(int(parameter.values[0]))
     return math.inf if parameter.parameter_type == "real" else len(parameter.values)
 
 

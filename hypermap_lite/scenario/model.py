@@ -13,7 +13,7 @@ from typing import Any
 from hypermap_lite.objectives import Objective
 from hypermap_lite.scenario.defaults import is_belief
 from hypermap_lite.scenario.sources import Layer, folders_of, origin_of
-from hypermap_lite.typing import Value
+from hypermap_lite.typing import Level, Value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,11 +34,14 @@ class ParameterSpec:
 
     name: str
     parameter_type: str
-    values: tuple[Value, ...]
-    """Bounds [low, high] of a real or integer parameter, else its levels."""
+    values: tuple[Level, ...]
+    """Bounds [low, high] of a real or integer parameter, the number of elements of a permutation, else the levels."""
 
     scale: str = "linear"
     """``linear`` or ``log``."""
+
+    kernel: str = "spearman"
+    """Distance of two permutations."""
 
     parameter_default: Value | None = None
     prior: ComponentSpec | None = None

@@ -205,6 +205,8 @@ def _values(table: Table, rows: Sequence[int], parameters: Mapping[str, Mapping[
         first = next(iter(counts))
         values = enumerate_names([str(value) for value in parameters[first]["values"]], 8)
         whole = "whole numbers, " * (parameters[first]["parameter_type"] == "integer")
+        if parameters[first]["parameter_type"] == "permutation":
+            values = f"the numbers below {values} in any order"
         allowed = f"for '{first}': {whole}{values if _is_listed(parameters[first]) else values.replace(', ', ' to ')}"
         raise ScenarioError("$", problem, allowed=allowed, hint="Leave these rows out, or widen the parameter.")
     return {name: [value for value in column if value is not None] for name, column in columns.items()}
@@ -216,6 +218,9 @@ def _legal(table: Table, rows: Sequence[int], name: str, entry: Mapping[str, Any
     for k in rows:
         if kind == "categorical":
             yield texts[k] if texts[k] in values else None
+            continue
+        if kind == "permutation":
+            yield _order(texts[k], values[0])
             continue
         number = _number(table, k, name)
         low, high = min(values), max(values)
@@ -230,8 +235,14 @@ def _legal(table: Table, rows: Sequence[int], name: str, entry: Mapping[str, Any
             yield round(number) if abs(number - round(number)) <= max(slack, ROUNDING) else None
 
 
+def _order(text: str, size: int) -> Value | None:
+    words = text.split()
+    is_order = sorted(words) == sorted(map(str, range(size)))
+    return [int(word) for word in words] if is_order else None  # type: ignore[return-value]  # a list, as JSON has it
+
+
 def _is_listed(entry: Mapping[str, Any]) -> bool:
-    return entry["parameter_type"] in ("ordinal", "categorical")
+    return entry["parameter_type"] in ("ordinal", "categorical", "permutation")
 
 
 def _weights(table: Table, rows: Sequence[int], name: str) -> list[float]:

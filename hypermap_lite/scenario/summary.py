@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from hypermap_lite.evaluation.placeholders import as_argument
 from hypermap_lite.scenario.model import ComponentSpec, ParameterSpec, Scenario
 
 INDENT = " " * 12
@@ -40,7 +41,9 @@ def _parameters(parameters: Sequence[ParameterSpec]) -> list[str]:
     for p in parameters:
         numeric = p.parameter_type in ("real", "integer")
         values = f"{p.values[0]:g} to {p.values[1]:g}" if numeric else _shorten(", ".join(map(str, p.values)))
-        default = "-" if p.parameter_default is None else str(p.parameter_default)
+        if p.parameter_type == "permutation":
+            values = f"orders of 0 to {int(p.values[0]) - 1} ({p.kernel})"
+        default = "-" if p.parameter_default is None else as_argument(p.parameter_default)
         rows.append((p.name, p.parameter_type, values, p.scale if numeric else "-", default, _prior(p.prior)))
     return _table(rows)
 

@@ -8,6 +8,7 @@ from hypermap_lite.space.constraint import Constraint
 from hypermap_lite.space.integer import IntegerParameter
 from hypermap_lite.space.ordinal import OrdinalParameter
 from hypermap_lite.space.parameter import Parameter
+from hypermap_lite.space.permutation import PermutationParameter
 from hypermap_lite.space.real import RealParameter
 from hypermap_lite.space.search_space import SearchSpace
 
@@ -16,6 +17,7 @@ PARAMETERS: Final[Mapping[str, type[Parameter]]] = {
     "integer": IntegerParameter,
     "ordinal": OrdinalParameter,
     "categorical": CategoricalParameter,
+    "permutation": PermutationParameter,
 }
 """JSON name of each parameter type."""
 
@@ -26,6 +28,7 @@ __all__ = [
     "IntegerParameter",
     "OrdinalParameter",
     "Parameter",
+    "PermutationParameter",
     "RealParameter",
     "SearchSpace",
 ]

@@ -132,6 +132,16 @@ def variable(name: str) -> Number:
     return lambda columns: np.asarray(columns[name], dtype=float)
 
 
+def element_at(name: str, place: int) -> Number:
+    """Return the element at a place of a permutation."""
+    return lambda columns: np.asarray(columns[name][:, place], dtype=float)
+
+
+def place_of(name: str, element: int) -> Number:
+    """Return the place of an element in a permutation."""
+    return lambda columns: np.asarray(np.argmax(columns[name] == element, axis=1), dtype=float)
+
+
 def applied(function: Callable[..., FloatArray], arguments: Sequence[Number]) -> Number:
     """Return a function's value at some terms; NaN where it is not finite."""
 

@@ -25,12 +25,15 @@ from hypermap_lite.space.expressions import (
     applied,
     compared,
     constant,
+    element_at,
     negated,
+    place_of,
     texts_equal,
     variable,
 )
 from hypermap_lite.space.listed import ListedParameter
 from hypermap_lite.space.parameter import Parameter
+from hypermap_lite.space.permutation import PermutationParameter
 from hypermap_lite.space.source_text import ALLOWED, MAX_DEPTH, SHOWN, SourceText, is_plain
 
 _SYMBOLS: Final[dict[type, str]] = {
@@ -118,6 +121,10 @@ class ExpressionReader:
                 return Term(number=applied(np.negative, [number]) if isinstance(node.op, ast.USub) else number)
             case ast.Compare():
                 return self._comparison(node, depth)
+            case ast.Subscript(value=ast.Name() as inner, slice=index):
+                return Term(number=element_at(*self._order_and_number(node, inner, index)))
+            case ast.Call(func=ast.Name(id="position"), args=[ast.Name() as inner, index], keywords=[]):
+                return Term(number=place_of(*self._order_and_number(node, inner, index)))
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return self._call(node, name, arguments, depth)
         hint = "Powers are written **." if isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitXor) else ""
@@ -145,11 +152,27 @@ class ExpressionReader:
             if name in FUNCTIONS:
                 hint = f"'{name}' is a function: {name}(...)."
             raise self._source.error(node, f"there is no parameter '{name[:SHOWN]}'", self._known(), hint)
+        if isinstance(parameter, PermutationParameter):
+            allowed = f"{name}[0], the element that comes first, and position({name}, 0), the place of element 0"
+            raise self._source.error(node, f"'{name}' is a permutation, not a number", allowed)
         self.names.add(name)
         levels = parameter.levels if isinstance(parameter, ListedParameter) else ()
         if levels and all(isinstance(level, str) for level in levels):
             return Term(text=lambda columns: columns[name], levels=tuple(map(str, levels)))
         return Term(number=variable(name))
+
+    def _order_and_number(self, node: ast.AST, inner: ast.Name, index: ast.expr) -> tuple[str, int]:
+        """Return the name of a permutation and the place or element that is asked for."""
+        name = self._source.name_at(inner)
+        parameter = self._parameters.get(name)
+        if not isinstance(parameter, PermutationParameter):
+            raise self._source.error(node, f"{self._source.excerpt(inner)} is no permutation", ALLOWED)
+        number = index.value if isinstance(index, ast.Constant) else None
+        if type(number) is not int or number >= parameter.size:
+            problem = f"{self._source.excerpt(index)} is no place and no element of '{name}'"
+            raise self._source.error(index, problem, f"0 to {parameter.size - 1}")
+        self.names.add(name)
+        return name, number
 
     def _call(self, node: ast.AST, name: str, arguments: Sequence[ast.expr], depth: int) -> Term:
         function = FUNCTIONS.get(name)

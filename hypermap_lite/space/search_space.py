@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from hypermap_lite.space.constraint import Constraint
 from hypermap_lite.space.parameter import Parameter
+from hypermap_lite.space.permutation import PermutationParameter
 from hypermap_lite.typing import BoolArray, Configuration, FloatArray, IntArray, Rng, Value
 
 KEY_DECIMALS = 10
@@ -61,8 +62,13 @@ class SearchSpace:
 
     @property
     def is_ordered(self) -> BoolArray:
-        """Which axes have an order (all but the categorical ones), shape (d,)."""
+        """Which axes have an order (all but categorical and permutation ones), shape (d,)."""
         return np.array([p.is_ordered for p in self.parameters])
+
+    @property
+    def permutations(self) -> Mapping[int, PermutationParameter]:
+        """The permutation parameters by their axes."""
+        return {j: p for j, p in enumerate(self.parameters) if isinstance(p, PermutationParameter)}
 
     @property
     def n_configurations(self) -> float:

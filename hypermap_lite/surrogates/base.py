@@ -6,16 +6,23 @@ return means and standard deviations for S joint scenarios at once, and can carr
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from hypermap_lite.space.permutation import PermutationParameter
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 Pullback = Callable[[FloatArray, FloatArray], FloatArray]
 """Turns derivatives by mean (S, n, m) and std (S or 1, n, m) into derivatives by X, shape (n, d)."""
+
+Permutations = Mapping[int, PermutationParameter]
+"""Permutation parameters by their axes."""
+
+NO_PERMUTATIONS: Permutations = {}
+"""For spaces without any; nobody changes it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +109,16 @@ class Surrogate(Protocol):
     starts_warm: ClassVar[bool]
     """Whether a fit gains from the hyperparameters of an earlier one."""
 
-    def fit(self, X: FloatArray, Y: FloatArray, *, is_ordered: BoolArray, rng: Rng, start: Any = None) -> Posterior:
+    def fit(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        *,
+        is_ordered: BoolArray,
+        rng: Rng,
+        start: Any = None,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Posterior:
         """Fit m objectives to n evaluations.
 
         Parameters
@@ -112,11 +128,13 @@ class Surrogate(Protocol):
         Y
             Objectives to be minimized, shape (n, m), finite.
         is_ordered
-            Which axes have an order, shape (d,); the others are categorical.
+            Which axes have an order, shape (d,); the others are categorical, or permutations.
         rng
             Source of all randomness.
         start
             `hyperparameters` of an earlier posterior to start from.
+        permutations
+            The axes without an order whose codes are permutations.
         """
         ...
 

@@ -9,7 +9,16 @@ from typing import ClassVar
 import numpy as np
 from scipy.special import ndtri
 
-from hypermap_lite.surrogates.base import Conditional, Fantasies, Field, Posterior, Prediction, as_prediction
+from hypermap_lite.surrogates.base import (
+    NO_PERMUTATIONS,
+    Conditional,
+    Fantasies,
+    Field,
+    Permutations,
+    Posterior,
+    Prediction,
+    as_prediction,
+)
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import (
     Hyperparameters,
@@ -42,16 +51,17 @@ class GaussianProcess:
         is_ordered: BoolArray,
         rng: Rng,
         start: Sequence[Hyperparameters] | None = None,
+        permutations: Permutations = NO_PERMUTATIONS,
     ) -> Posterior:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
         outputs = [Standardized.of(column) for column in Y.T]
         prior = HyperPrior(X.shape[1], has_noise=self.noise)
         processes = []
         for k, output in enumerate(outputs):
-            likelihood = MarginalLikelihood(X, output.values, is_ordered, prior)
+            likelihood = MarginalLikelihood(X, output.values, is_ordered, prior, permutations)
             starts = [prior.mode()] if start is None else [start[k], prior.mode()]
             best = fit_hyperparameters(likelihood, starts)
-            processes.append(Process.condition(X, output, best, is_ordered))
+            processes.append(Process.condition(X, output, best, is_ordered, permutations))
         return GaussianProcessPosterior(processes=tuple(processes))
 
 
@@ -93,7 +103,8 @@ class GaussianProcessPosterior:
             values = np.concatenate([p.output.values, p.joint(X_pending)[0]])
             X = np.vstack([p.X, X_pending])
             output = replace(p.output, values=values)
-            believed.append(Process.condition(X, output, p.hyperparameters, p.kernel.is_ordered))
+            kernel = p.kernel
+            believed.append(Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations))
         return GaussianProcessPosterior(processes=tuple(believed))
 
     def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:

@@ -1,12 +1,13 @@
-"""The covariance function: Matern-5/2 over ordered axes times a Hamming factor over categorical ones."""
+"""The covariance function: Matern-5/2 over ordered axes times a factor for each categorical or permutation axis."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from hypermap_lite.surrogates.base import Permutations
 from hypermap_lite.typing import BoolArray, FloatArray
 
 SQRT5 = math.sqrt(5.0)
@@ -18,14 +19,16 @@ class MaternHammingKernel:
 
     .. math::
 
-        k(x, x') = (1 + \sqrt5 r + \tfrac53 r^2) e^{-\sqrt5 r} \prod_{c} e^{-[x_c \ne x'_c] / l_c},
+        k(x, x') = (1 + \sqrt5 r + \tfrac53 r^2) e^{-\sqrt5 r} \prod_{c} e^{-d_c(x_c, x'_c) / l_c},
         \qquad r^2 = \sum_j (x_j - x'_j)^2 / l_j^2
 
-    with j over the ordered and c over the categorical axes [1]_.
+    with j over the ordered and c over the other axes [1]_: d is 0 or 1 for equal and different categories, and a
+    distance between 0 and 1 for permutations [2]_.
 
     References
     ----------
     .. [1] Rasmussen, Williams. Gaussian Processes for Machine Learning, eq. 4.17. MIT Press, 2006.
+    .. [2] Deshwal, Belakaria, Doppa, Kim. Bayesian Optimization over Permutation Spaces. AAAI 2022.
     """
 
     lengthscales: FloatArray
@@ -33,6 +36,9 @@ class MaternHammingKernel:
 
     is_ordered: BoolArray
     """Which axes have an order, shape (d,)."""
+
+    permutations: Permutations = field(default_factory=dict)
+    """The axes without an order whose codes are permutations."""
 
     def __call__(self, A: FloatArray, B: FloatArray) -> FloatArray:
         """Return the correlations of n and k points, shape (n, k)."""
@@ -65,8 +71,16 @@ class MaternHammingKernel:
             return None
         exponent = np.zeros((len(A), len(B)))
         for c in np.flatnonzero(~self.is_ordered):
-            exponent += (A[:, c][:, None] != B[:, c][None, :]) / self.lengthscales[c]
+            exponent += self._distances(int(c), A, B) / self.lengthscales[c]
         return np.exp(-exponent)
+
+    def _distances(self, axis: int, A: FloatArray, B: FloatArray) -> FloatArray:
+        """Return the distances of n and k points along an axis without order, shape (n, k)."""
+        if axis not in self.permutations:
+            return (A[:, axis][:, None] != B[:, axis][None, :]).astype(float)
+        a, b = (self.permutations[axis].embed(points[:, axis]) for points in (A, B))
+        squares = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1)[None, :] - 2.0 * (a @ b.T)
+        return np.maximum(squares, 0.0)
 
     def pull_coordinates(self, weights: FloatArray, A: FloatArray, B: FloatArray) -> FloatArray:
         """Return sum_b w_ab H_ab (-(a - b)) / l^2: the gradient by A of sum_b w_ab k(a, b), shape (n, d).
@@ -91,6 +105,9 @@ class MaternHammingKernel:
         WK = None
         for c in np.flatnonzero(~self.is_ordered):
             WK = W * K if WK is None else WK
+            if c in self.permutations:
+                gradient[c] = np.vdot(WK, self._distances(int(c), X, X)) / self.lengthscales[c]
+                continue
             differs = X[:, c][:, None] != X[:, c][None, :]
             gradient[c] = WK[differs].sum() / self.lengthscales[c]
         return gradient

@@ -5,11 +5,12 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from hypermap_lite.surrogates.base import Permutations
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.typing import BoolArray, FloatArray
@@ -110,6 +111,7 @@ class MarginalLikelihood:
 
     is_ordered: BoolArray
     prior: HyperPrior
+    permutations: Permutations = field(default_factory=dict)
 
     def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the value and its gradient by the log hyperparameters, shape (d + 2,).
@@ -118,7 +120,7 @@ class MarginalLikelihood:
         dependence adds nothing to the gradient.
         """
         h = Hyperparameters.from_log(theta)
-        kernel = MaternHammingKernel(h.lengthscales, self.is_ordered)
+        kernel = MaternHammingKernel(h.lengthscales, self.is_ordered, self.permutations)
         C, H = kernel.parts(self.X, self.X)
         K = h.output_variance * C
         K.flat[:: len(K) + 1] += h.noise_variance

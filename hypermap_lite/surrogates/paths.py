@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from hypermap_lite.surrogates.base import Permutations
 from hypermap_lite.surrogates.linear_algebra import solve_lower
 from hypermap_lite.surrogates.process import Process
 from hypermap_lite.typing import FloatArray, Rng
@@ -19,8 +21,9 @@ DEGREES_OF_FREEDOM = 5
 class Features:
     """Random features whose products average to the kernel, a draw of their weights included.
 
-    Cosines for the ordered axes [1]_; for a categorical axis with correlation rho between different levels, a
-    factor sqrt(rho) g + sqrt(1 - rho) g_level per feature, with independent standard normal g and g_level.
+    Cosines for the ordered axes and for the embedded permutations [1]_, of which exp(-d^2 / l) is a Gaussian kernel;
+    for a categorical axis with correlation rho between different levels, a factor sqrt(rho) g + sqrt(1 - rho) g_level
+    per feature, with independent standard normal g and g_level.
 
     References
     ----------
@@ -28,7 +31,7 @@ class Features:
     """
 
     frequencies: FloatArray
-    """Shape (f, d); zero along categorical axes."""
+    """Shape (f, d); zero along axes without order."""
 
     phases: FloatArray
     amplitudes: FloatArray
@@ -40,6 +43,10 @@ class Features:
     seed: int
     """Source of the factors of the categorical axes."""
 
+    permutations: Permutations = field(default_factory=dict)
+    embedded_frequencies: Mapping[int, FloatArray] = field(default_factory=dict)
+    """Frequencies along the embedding of each permutation axis, shape (f, k)."""
+
     _draws: dict[tuple[int, int], FloatArray] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
@@ -49,17 +56,28 @@ class Features:
         chi2 = rng.chisquare(DEGREES_OF_FREEDOM, size=(n_features, 1)) / DEGREES_OF_FREEDOM
         frequencies = rng.standard_normal((n_features, len(is_ordered))) / np.sqrt(chi2) / h.lengthscales
         frequencies[:, ~is_ordered] = 0.0
+        permutations = process.kernel.permutations
         return cls(
             frequencies=frequencies,
             phases=rng.uniform(0, 2 * np.pi, n_features),
             amplitudes=rng.standard_normal(n_features) * math.sqrt(2 * h.output_variance / n_features),
-            correlations={int(c): math.exp(-1 / h.lengthscales[c]) for c in np.flatnonzero(~is_ordered)},
+            correlations={
+                int(c): math.exp(-1 / h.lengthscales[c]) for c in np.flatnonzero(~is_ordered) if c not in permutations
+            },
             seed=int(rng.integers(2**63)),
+            permutations=permutations,
+            embedded_frequencies={
+                axis: rng.standard_normal((n_features, parameter.embed(np.zeros(1)).shape[1]))
+                * math.sqrt(2 / h.lengthscales[axis])
+                for axis, parameter in permutations.items()
+            },
         )
 
     def __call__(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the drawn function at n points, shape (n,), and its gradient, shape (n, d)."""
         angles = X @ self.frequencies.T + self.phases  # (n, f)
+        for axis, parameter in self.permutations.items():
+            angles += parameter.embed(X[:, axis]) @ self.embedded_frequencies[axis].T
         factors = np.broadcast_to(self.amplitudes, angles.shape)
         for axis, correlation in self.correlations.items():
             factors = factors * self._level_factors(axis, correlation, X[:, axis])

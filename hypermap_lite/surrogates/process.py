@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hypermap_lite.surrogates.base import NO_PERMUTATIONS, Permutations
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, constant_mean, inverse_from_cholesky
@@ -61,13 +62,20 @@ class Process:
     """K^-1 (y - mean), shape (n,)."""
 
     @classmethod
-    def condition(cls, X: FloatArray, output: Standardized, h: Hyperparameters, is_ordered: BoolArray) -> Process:
+    def condition(
+        cls,
+        X: FloatArray,
+        output: Standardized,
+        h: Hyperparameters,
+        is_ordered: BoolArray,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Process:
         """Condition a process with known hyperparameters on the data.
 
         If the covariance cannot be factorized even with jitter, the data count as pure noise, so that the
         prediction is their mean with the full output variance.
         """
-        kernel = MaternHammingKernel(h.lengthscales, is_ordered)
+        kernel = MaternHammingKernel(h.lengthscales, is_ordered, permutations)
         K = h.output_variance * kernel(X, X)
         K.flat[:: len(X) + 1] += h.noise_variance
         L = safe_cholesky(K)

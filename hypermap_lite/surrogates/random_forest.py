@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hypermap_lite.errors import ScenarioError
-from hypermap_lite.surrogates.base import Conditional, Fantasies, Field, Posterior, Prediction
+from hypermap_lite.surrogates.base import (
+    NO_PERMUTATIONS,
+    Conditional,
+    Fantasies,
+    Field,
+    Permutations,
+    Posterior,
+    Prediction,
+)
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 if TYPE_CHECKING:
@@ -26,7 +34,8 @@ class RandomForest:
     """Independent random forests; a tree is one draw of what the objective may be.
 
     The predicted variance is the total variance over the trees: the mean of the leaves' variances plus the variance
-    of the leaves' means [1]_. Categorical axes are split as ordered codes, which a deep tree can refine.
+    of the leaves' means [1]_. Categorical axes are split as ordered codes, which a deep tree can refine; of a
+    permutation the place of each element is split.
 
     References
     ----------
@@ -48,12 +57,24 @@ class RandomForest:
         if self.min_samples_leaf < 1:
             raise ScenarioError("$.min_samples_leaf", f"it is {self.min_samples_leaf}", allowed=">= 1")
 
-    def fit(self, X: FloatArray, Y: FloatArray, *, is_ordered: BoolArray, rng: Rng, start: Any = None) -> Posterior:
+    def fit(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        *,
+        is_ordered: BoolArray,
+        rng: Rng,
+        start: Any = None,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Posterior:
         """Fit one forest per objective; see `Surrogate.fit`."""
         seed = int(rng.integers(2**31))
-        return ForestPosterior(options=self, X=X, Y=Y, seed=seed, forests=self.grow(X, Y, seed))
+        forests = self.grow(X, Y, seed, permutations)
+        return ForestPosterior(options=self, X=X, Y=Y, seed=seed, forests=forests, permutations=permutations)
 
-    def grow(self, X: FloatArray, Y: FloatArray, seed: int) -> tuple[Forest, ...]:
+    def grow(
+        self, X: FloatArray, Y: FloatArray, seed: int, permutations: Permutations = NO_PERMUTATIONS
+    ) -> tuple[Forest, ...]:
         """Return one forest per objective."""
         from sklearn.ensemble import RandomForestRegressor  # slow to import, used here only
 
@@ -69,8 +90,16 @@ class RandomForest:
                 random_state=(seed + k) % 2**31,
             )
             scaled = (y - offset) / magnitude
-            forests.append(Forest.of(regressor.fit(X, scaled), offset, magnitude))
+            forests.append(Forest.of(regressor.fit(features_of(X, permutations), scaled), offset, magnitude))
         return tuple(forests)
+
+
+def features_of(X: FloatArray, permutations: Permutations) -> FloatArray:
+    """Return what the trees split: n points with each permutation's code replaced by the places of its elements."""
+    if not permutations:
+        return X
+    columns = [permutations[j].positions(X[:, j]) if j in permutations else X[:, j : j + 1] for j in range(X.shape[1])]
+    return np.hstack(columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +137,7 @@ class ForestPosterior:
     Y: FloatArray
     seed: int
     forests: tuple[Forest, ...]
+    permutations: Permutations = field(default_factory=dict)
 
     @property
     def hyperparameters(self) -> None:
@@ -128,7 +158,8 @@ class ForestPosterior:
         return np.array([forest.scale for forest in self.forests])
 
     def _scaled_per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
-        answers = [forest.per_tree(X) for forest in self.forests]
+        features = features_of(X, self.permutations)
+        answers = [forest.per_tree(features) for forest in self.forests]
         return np.stack([a[0] for a in answers], axis=2), np.stack([a[1] for a in answers], axis=2)
 
     def _per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -152,8 +183,7 @@ class ForestPosterior:
         if not len(X_pending):
             return self
         X, Y = np.vstack([self.X, X_pending]), np.vstack([self.Y, self.predict(X_pending).mean])
-        forests = self.options.grow(X, Y, self.seed)
-        return ForestPosterior(options=self.options, X=X, Y=Y, seed=self.seed, forests=forests)
+        return replace(self, X=X, Y=Y, forests=self.options.grow(X, Y, self.seed, self.permutations))
 
     def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
         """Take every tree as a draw (so there are as many as trees, whatever n); pending points by `believe`."""

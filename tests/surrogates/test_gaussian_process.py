@@ -5,6 +5,8 @@ import pytest
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
+from hypermap_lite.space import PermutationParameter
+from hypermap_lite.space.permutation import EMBEDDINGS
 from hypermap_lite.surrogates import GaussianProcess
 from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior, quasi_normal
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
@@ -173,3 +175,30 @@ def test_quasi_normal_draws_are_standard_normal_beyond_sobols_dimensions() -> No
     assert draws.shape == (64, 21_300)
     assert draws[:, -50:].std() == pytest.approx(1.0, abs=0.05)
     assert draws[:, :50].mean(axis=0) == pytest.approx(np.zeros(50), abs=0.06)
+
+
+@pytest.mark.parametrize("kernel", EMBEDDINGS)
+def test_features_of_permutations_average_to_the_kernel(kernel: str) -> None:
+    parameter = PermutationParameter(name="order", size=4, kernel=kernel)
+    points = np.column_stack([np.full(3, 0.3), parameter.encode([(0, 1, 2, 3), (1, 0, 2, 3), (3, 2, 1, 0)])])
+    h = Hyperparameters(np.array([0.5, 0.7]), 1.0, 0.01)
+    output = Standardized.of(np.zeros(1))
+    process = Process.condition(points[:1], output, h, np.array([True, False]), {1: parameter})
+    draws = np.array([Features.draw(process, 64, np.random.default_rng(i))(points)[0] for i in range(3000)])
+    assert draws.T @ draws / 3000 == pytest.approx(process.kernel(points, points), abs=0.06)
+
+
+def test_what_is_learned_of_one_order_is_believed_of_orders_alike() -> None:
+    parameter = PermutationParameter(name="order", size=6)
+    rng = np.random.default_rng(0)
+    orders = parameter.snap(rng.random((40, 1))[:, 0])[:, None]
+
+    def cost(codes: np.ndarray) -> np.ndarray:
+        return (parameter.positions(codes) * np.arange(6)).sum(axis=1)
+
+    posterior = GaussianProcess().fit(
+        orders, cost(orders[:, 0])[:, None], is_ordered=np.zeros(1, bool), rng=rng, permutations={0: parameter}
+    )
+    new = parameter.snap(rng.random(200))
+    predicted = posterior.predict(new[:, None]).mean[:, 0]
+    assert np.corrcoef(predicted, cost(new))[0, 1] > 0.95

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from sklearn.gaussian_process.kernels import Matern
 
+from hypermap_lite.space import PermutationParameter
+from hypermap_lite.space.permutation import EMBEDDINGS
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 
 RNG = np.random.default_rng(0)
@@ -54,3 +56,31 @@ def test_coordinate_gradients_agree_with_finite_differences() -> None:
     for j, e in enumerate(1e-6 * np.eye(3)):
         numeric = ((kernel(A + e, B) - kernel(A - e, B)) * w).sum(axis=1) / 2e-6
         assert gradient[:, j] == pytest.approx(numeric, rel=1e-5, abs=1e-8)
+
+
+ORDERS = PermutationParameter(name="order", size=5, kernel="kendall")
+
+
+def test_a_permutation_axis_has_the_distance_of_its_kernel() -> None:
+    kernel = MaternHammingKernel(np.array([1.0, 0.5]), np.array([True, False]), {1: ORDERS})
+    codes = ORDERS.encode([(0, 1, 2, 3, 4), (1, 0, 2, 3, 4), (4, 3, 2, 1, 0)])
+    points = np.column_stack([np.full(3, 0.2), codes])
+    assert kernel(points[:1], points)[0] == pytest.approx([1.0, np.exp(-2 / 10), np.exp(-2)])
+
+
+@pytest.mark.parametrize("name", EMBEDDINGS)
+def test_gradients_by_the_lengthscale_of_a_permutation_agree_with_finite_differences(name: str) -> None:
+    parameter = PermutationParameter(name="order", size=5, kernel=name)
+    mask = np.array([True, False, False])
+    X = np.column_stack([A[:, 0], parameter.snap(A[:, 1]), (RNG.integers(3, size=6) + 0.5) / 3])
+    W = np.ones((6, 6)) + np.eye(6)
+
+    def total(log_lengthscales: np.ndarray) -> float:
+        return float(np.vdot(W, MaternHammingKernel(np.exp(log_lengthscales), mask, {1: parameter})(X, X)))
+
+    kernel = MaternHammingKernel(LENGTHSCALES, mask, {1: parameter})
+    K, H = kernel.parts(X, X)
+    step = 1e-6 * np.eye(3)
+    numeric = [(total(np.log(LENGTHSCALES) + e) - total(np.log(LENGTHSCALES) - e)) / 2e-6 for e in step]
+    assert kernel.pull_log_lengthscales(W, K, H, X) == pytest.approx(numeric, rel=1e-5, abs=1e-7)
+    assert not kernel.pull_coordinates(W * H, X, X)[:, 1:].any()

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from hypermap_lite.errors import ScenarioError
+from hypermap_lite.space import PermutationParameter
 from hypermap_lite.surrogates import RandomForest
+from hypermap_lite.surrogates.random_forest import features_of
 
 RNG = np.random.default_rng(0)
 X = RNG.random((40, 2))
@@ -71,3 +73,10 @@ def test_a_constant_objective_is_fine() -> None:
 def test_impossible_options_are_refused(options: dict) -> None:
     with pytest.raises(ScenarioError, match=next(iter(options))):
         RandomForest(**options)
+
+
+def test_a_permutation_becomes_the_places_of_its_elements() -> None:
+    parameter = PermutationParameter(name="order", size=3)
+    X = np.column_stack([[0.2, 0.4], parameter.encode([(2, 0, 1), (0, 1, 2)]), [0.6, 0.8]])
+    assert features_of(X, {1: parameter}).tolist() == [[0.2, 1, 2, 0, 0.6], [0.4, 0, 1, 2, 0.8]]
+    assert features_of(X, {}) is X
