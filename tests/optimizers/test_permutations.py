@@ -81,7 +81,8 @@ def test_all_orders_of_a_small_space_are_tried_once(kind: str) -> None:
 
 
 def test_a_stored_run_is_gone_on_with_and_drawn(tmp_path) -> None:
-    scenario = scenario_of(input_parameters=MIXED, budget={"evaluations": 4})
+    small = {"number_of_samples": 3}
+    scenario = scenario_of(input_parameters=MIXED, budget={"evaluations": 4}, design_of_experiment=small)
     first = optimize(scenario, objectives, output_directory=tmp_path)
     text = (tmp_path / "history.csv").read_text().splitlines()[1]
     assert text.startswith(as_argument(first.evaluations[0].configuration["order"]) + ",")
