@@ -16,6 +16,9 @@ from hypermap_lite.typing import FloatArray, Rng
 UNIMAGINABLE = 10**300
 """Larger numbers of points are shown as this."""
 
+LARGEST = 10_000
+"""Points of the largest grid that is looked through for those that constraints allow."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
@@ -61,7 +64,7 @@ def _finest(space: SearchSpace, n: int) -> FloatArray:
     while size(levels) < size(levels + 1) <= n:
         levels += 1
     X = _full(space, _equal(space, levels))
-    while space.constraints and size(levels) < size(levels + 1) <= ENUMERATION_LIMIT:
+    while space.constraints and size(levels) < size(levels + 1) <= LARGEST:
         levels += 1
         finer = _full(space, _equal(space, levels))
         if len(X) and len(finer) > n:
