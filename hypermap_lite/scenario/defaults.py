@@ -70,6 +70,8 @@ def _n_grid_levels(parameter: Mapping[str, Any], levels: int) -> int:
         return levels
     if parameter["parameter_type"] == "integer":
         return int(parameter["values"][1]) - int(parameter["values"][0]) + 1
+    if parameter["parameter_type"] == "permutation":
+        return math.factorial(int(parameter["values"][0]))
     return len(parameter["values"])
 
 
