@@ -89,8 +89,8 @@ class Optimizer:
         suggestion
             What `ask` returned, or its trial number.
         result
-            Objective values by name, or a bare number if there is one objective; ``{"feasible": False}`` if the
-            configuration is not allowed; None if the evaluation failed.
+            Objective values by name, or a bare number if there is one objective; ``{"feasible": False}``, or what
+            ``feasible_output`` says, if the configuration is not allowed; None if the evaluation failed.
         error
             Why it failed.
 
@@ -111,7 +111,8 @@ class Optimizer:
             raise UsageError(f"tell: trial {trial} is not pending (pending: {known})")
         outcome = Outcome(state=State.FAILED, error=error or "no result was told")
         if result is not None:
-            outcome = outcome_of(result, [o.name for o in self.scenario.objectives])
+            names = [o.name for o in self.scenario.objectives]
+            outcome = outcome_of(result, names, self.scenario.feasible_output)
         evaluation = Evaluation(
             suggestion=asked, state=outcome.state, values=outcome.values, error=error or outcome.error
         )

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from hypermap_lite.acquisition import ACQUISITIONS, Bopro, Pibo, PriorWeighting
+from hypermap_lite.acquisition import ACQUISITIONS, Bopro, FeasibilityWeighting, Pibo, PriorWeighting
 from hypermap_lite.design import DESIGNS, Grid, InitialDesign, PriorSampling, RandomSampling
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.evaluation import EVALUATORS
@@ -39,6 +39,9 @@ SAMPLING_PHASES: Mapping[str, SamplingPhase] = {
 
 PRIOR_WEIGHTINGS: Mapping[str, type[PriorWeighting]] = {"pibo": Pibo, "bopro": Bopro}
 """JSON name of each way the prior enters the acquisition function."""
+
+FEASIBILITY_WEIGHTINGS: Mapping[str, type[FeasibilityWeighting]] = {"probability": FeasibilityWeighting}
+"""JSON name of each way infeasible evaluations enter the acquisition function."""
 
 
 def build_member(family: Mapping[str, type[Member]], spec: ComponentSpec, kind: str, **extra: Any) -> Member:
@@ -266,13 +269,16 @@ def build_design(scenario: Scenario) -> InitialDesign:
 def build_method(scenario: Scenario) -> Method:
     """Make the parts of Bayesian optimization."""
     acquisition = scenario.acquisition
-    weighting = acquisition.prior_weighting
+    weighting, by_feasibility = acquisition.prior_weighting, acquisition.feasibility_weighting
     return Method(
         surrogate=build_member(SURROGATES, scenario.surrogate, "surrogate"),
         acquisition=build_member(ACQUISITIONS, acquisition.function, "acquisition function"),
         scalarization=build_member(SCALARIZATIONS, acquisition.scalarization, "scalarization"),
         weights=_build_weights(scenario),
         prior_weighting=None if weighting is None else build_member(PRIOR_WEIGHTINGS, weighting, "prior weighting"),
+        feasibility_weighting=None
+        if by_feasibility is None
+        else build_member(FEASIBILITY_WEIGHTINGS, by_feasibility, "feasibility weighting"),
         maximizer=build_member(MAXIMIZERS, scenario.maximizer, "maximizer"),
         fallback=PriorSampling(),
         epsilon=scenario.optimizer.options.get("epsilon") or 0.0,
@@ -300,7 +306,7 @@ def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = No
     """
     names = tuple(objective.name for objective in scenario.objectives)
     if function is not None:
-        return PythonFunction(function=function, objectives=names)
+        return PythonFunction(function=function, objectives=names, feasible_output=scenario.feasible_output)
     spec = scenario.evaluator.component
     if spec is None:
         raise ScenarioError(
@@ -309,7 +315,8 @@ def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = No
             allowed=", ".join(EVALUATORS),
             hint="Name one, or pass a function to hypermap_lite.optimize.",
         )
-    return build_member(EVALUATORS, spec, "evaluator", objectives=names, **_surroundings(spec, scenario))
+    outputs = {"objectives": names, "feasible_output": scenario.feasible_output}
+    return build_member(EVALUATORS, spec, "evaluator", **outputs, **_surroundings(spec, scenario))
 
 
 def _surroundings(spec: ComponentSpec, scenario: Scenario) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Objectives: their names, directions and reference points; the one place where a direction flips a sign."""
+"""What the black box answers: objectives, with the one place where a direction flips a sign, and the feasibility."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from enum import Enum
 
 import numpy as np
 
+from hypermap_lite.errors import ScenarioError
 from hypermap_lite.typing import FloatArray
 
 
@@ -35,6 +36,35 @@ class Objective:
     def sign(self) -> float:
         """Factor that turns a value into one to be minimized: 1.0 or -1.0."""
         return 1.0 if self.goal is Goal.MINIMIZE else -1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeasibleOutput:
+    """What the black box says of whether a configuration is allowed, and how the files say it."""
+
+    name: str = "Valid"
+    """Key under which an evaluation returns it; also its column in the files."""
+
+    true_value: str = "True"
+    """Text for a feasible configuration."""
+
+    false_value: str = "False"
+    """Text for an infeasible one."""
+
+    def __post_init__(self) -> None:
+        if self.true_value == self.false_value:
+            problem = f"feasible and infeasible are both called {self.true_value!r}"
+            raise ScenarioError("$.false_value", problem, allowed="two different texts")
+
+    def text(self, is_feasible: bool | None) -> str:
+        """Return what stands in the column; nothing where it is not known."""
+        return "" if is_feasible is None else self.true_value if is_feasible else self.false_value
+
+    def verdict(self, answer: object, number: float | None) -> bool | None:
+        """Return whether an answer, and the number it may be, says feasible; None if it says neither."""
+        if isinstance(answer, str):
+            return {self.true_value: True, self.false_value: False}.get(answer)
+        return bool(number) if number in (0.0, 1.0) else None
 
 
 def to_minimization(objectives: Sequence[Objective], values: FloatArray) -> FloatArray:

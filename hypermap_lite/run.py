@@ -158,6 +158,7 @@ def run_scenario(
         objectives=scenario.objectives,
         canonical=scenario.canonical,
         function=None if function is None else name_of(function),
+        feasible_output=scenario.feasible_output,
     )
     executor = _executor(evaluator, spec, is_given=function is not None)
     on_built()

@@ -12,11 +12,11 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from hypermap_lite.acquisition import ACQUISITIONS
-from hypermap_lite.assembly import PRIOR_WEIGHTINGS
+from hypermap_lite.assembly import FEASIBILITY_WEIGHTINGS, PRIOR_WEIGHTINGS
 from hypermap_lite.design import DESIGNS
 from hypermap_lite.evaluation import EVALUATORS
 from hypermap_lite.maximizers import MAXIMIZERS
-from hypermap_lite.objectives import Goal, Objective
+from hypermap_lite.objectives import FeasibleOutput, Goal, Objective
 from hypermap_lite.optimizers import OPTIMIZERS, SEARCHES
 from hypermap_lite.priors import JOINT_PRIORS, PRIORS
 from hypermap_lite.priors.beta import SHAPES
@@ -48,15 +48,19 @@ FAMILIES: dict[str, Mapping[str, type]] = {
     "scalarization": SCALARIZATIONS,
     "weights": WEIGHTS,
     "prior_weighting": PRIOR_WEIGHTINGS,
+    "feasibility_weighting": FEASIBILITY_WEIGHTINGS,
     "maximizer": MAXIMIZERS,
     "evaluator": EVALUATORS,
 }
 """Sections whose options are the fields of a family's members."""
 
-AROUND = {"acquisition": ("scalarization", "weights", "prior_weighting"), "evaluator": EVALUATOR_KEYS}
+AROUND = {
+    "acquisition": ("scalarization", "weights", "prior_weighting", "feasibility_weighting"),
+    "evaluator": EVALUATOR_KEYS,
+}
 """Keys of a section that are not options of the member, besides its kind."""
 
-FROM_ELSEWHERE = {"objectives", "search_path", "working_directory", "parameters"}
+FROM_ELSEWHERE = {"objectives", "feasible_output", "search_path", "working_directory", "parameters"}
 """Fields of evaluators that the rest of the scenario fills in."""
 
 MEMBERS = [
@@ -156,7 +160,7 @@ def test_the_names_are_those_of_the_family(section: str, names: set[str]) -> Non
     schema = schema_of(section)
     key = kind_key(schema)
     assert key is not None
-    without_one = {"none"} if section in ("evaluator", "prior_weighting") else set()
+    without_one = {"none"} if section in ("evaluator", "prior_weighting", "feasibility_weighting") else set()
     assert set(schema["properties"][key]["enum"]) == names | without_one
 
 
@@ -177,6 +181,7 @@ def test_the_options_and_defaults_are_those_of_the_member(section: str, kind: st
         pytest.param("parameter", ParameterSpec, ("scale", "parameter_default", "description"), id="parameter"),
         pytest.param("scenario", Scenario, ("seed", "description"), id="scenario"),
         pytest.param("objective", Objective, ("reference_point",), id="objective"),
+        pytest.param("feasible_output", FeasibleOutput, ("name", "true_value", "false_value"), id="feasible_output"),
     ],
 )
 def test_the_defaults_are_those_of_the_dataclasses(section: str, part: type, keys: tuple[str, ...]) -> None:

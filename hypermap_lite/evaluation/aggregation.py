@@ -9,7 +9,7 @@ from typing import Final
 from hypermap_lite.evaluation.outcome import Evaluation, Replicate, State, Suggestion
 
 WORST_FIRST: Final = (State.FAILED, State.TIMEOUT, State.INFEASIBLE)
-"""States that leave a configuration without objective values; the first one met among its replicates is its own."""
+"""States other than completed; the first one met among a configuration's replicates is its own."""
 
 _PHRASES: Final = {
     State.FAILED: "failed",
@@ -34,14 +34,16 @@ def summarize(suggestion: Suggestion, replicates: Sequence[Replicate], timestamp
     -------
     Evaluation
         Means and standard errors (of the sample, divisor r - 1) if all replicates completed; else the worst state
-        among them, with the reason of the first replicate in it.
+        among them, with the reason of the first replicate in it. An infeasible configuration has the means over
+        those replicates that have a value.
     """
     ordered = sorted(replicates, key=lambda r: r.replicate)
     states = [r.outcome.state for r in ordered]
     state = next((worst for worst in WORST_FIRST if worst in states), State.COMPLETED)
     columns: dict[str, list[float]] = {}
-    if state is State.COMPLETED:
-        columns = {name: [r.outcome.values[name] for r in ordered] for name in ordered[0].outcome.values}
+    for outcome in (r.outcome for r in ordered if state in (State.COMPLETED, State.INFEASIBLE)):
+        for name, value in outcome.values.items():
+            columns.setdefault(name, []).append(value)
     return Evaluation(
         suggestion=suggestion,
         state=state,

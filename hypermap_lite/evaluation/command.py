@@ -20,6 +20,7 @@ from hypermap_lite.evaluation.evaluator import EvaluationRequest, outcome_of
 from hypermap_lite.evaluation.logs import last_text_line, shorten_logs
 from hypermap_lite.evaluation.outcome import Outcome
 from hypermap_lite.evaluation.placeholders import BUILT_IN, as_argument, fill, placeholders_in, unknown_placeholders
+from hypermap_lite.objectives import FeasibleOutput
 
 THREAD_CAPS: Final = "HYPERMAP_THREAD_CAPS"
 """Environment variable that names the thread limits a worker set for itself; programs are started without them."""
@@ -48,6 +49,9 @@ class Command:
 
     objectives: Sequence[str]
     """Names of the objectives."""
+
+    feasible_output: FeasibleOutput | None = None
+    """What says whether a configuration is allowed; None for an entry ``feasible`` that may be left out."""
 
     shell: bool = False
     """Whether the arguments are joined by blanks and run by ``/bin/sh``; placeholders are quoted for it."""
@@ -99,7 +103,7 @@ class Command:
         arguments = [fill(argument, values, quote=self.shell) for argument in self.command]
         try:
             self._run(" ".join(arguments) if self.shell else arguments, request)
-            return outcome_of(self._read_result(request), self.objectives)
+            return outcome_of(self._read_result(request), self.objectives, self.feasible_output)
         finally:
             shorten_logs(request)
 

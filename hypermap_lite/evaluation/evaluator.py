@@ -16,10 +16,13 @@ from typing import Any, Final, Protocol, TypeGuard
 
 from hypermap_lite.errors import EvaluationError
 from hypermap_lite.evaluation.outcome import Outcome, Replicate, State
+from hypermap_lite.objectives import FeasibleOutput
 from hypermap_lite.typing import Configuration
 
 FEASIBLE_KEY = "feasible"
-"""Entry of a result that says, if false, that the configuration is not allowed."""
+"""Entry of a result that says, if false, that the configuration is not allowed; a scenario may name another."""
+
+NOT_FEASIBLE = "the black box answered: not feasible"
 
 MAX_REASON = 300
 """Characters of a failure's reason that go into a CSV."""
@@ -101,7 +104,7 @@ def answer(request: EvaluationRequest, outcome: Outcome, seconds: float) -> Repl
     )
 
 
-def outcome_of(result: object, objectives: Sequence[str]) -> Outcome:
+def outcome_of(result: object, objectives: Sequence[str], feasible_output: FeasibleOutput | None = None) -> Outcome:
     """Turn what a black box returned into an outcome.
 
     Parameters
@@ -109,55 +112,82 @@ def outcome_of(result: object, objectives: Sequence[str]) -> Outcome:
     result
         A mapping with every objective (its other finite numbers become metrics; ``{"feasible": false}`` needs no
         objectives) or anything else with names, such as a pandas Series or a named tuple; or the objectives as a
-        sequence or array in their order; or a number if there is only one.
+        sequence or array in their order, the feasibility last; or a number if there is only one.
     objectives
         Their names.
+    feasible_output
+        The entry that must say whether the configuration is allowed; None for ``feasible``, which may be left out.
 
     Returns
     -------
     Outcome
-        Completed, infeasible, or failed with the reason if a value is missing, not a number, NaN or infinite, or
-        ``feasible`` is neither true nor false.
+        Completed, infeasible (with those objectives that are finite numbers), or failed with the reason if a value
+        is missing, not a number, NaN or infinite, or the feasibility is neither true nor false.
     """
-    entries = _by_name(result, objectives)
+    flag = FEASIBLE_KEY if feasible_output is None else feasible_output.name
+    entries = _by_name(result, objectives, () if feasible_output is None else (flag,))
     if isinstance(entries, str):
         return failure(entries)
     numbers = {name: as_number(value) for name, value in entries.items()}
     metrics = {
         str(name): number
         for name, number in numbers.items()
-        if name not in (*objectives, FEASIBLE_KEY) and number is not None and math.isfinite(number)
+        if name not in (*objectives, flag) and number is not None and math.isfinite(number)
     }
-    if FEASIBLE_KEY in entries and FEASIBLE_KEY not in objectives:
-        if numbers[FEASIBLE_KEY] not in (0.0, 1.0):
-            return failure(f"'{FEASIBLE_KEY}' is {shorten(entries[FEASIBLE_KEY])}, neither true nor false", metrics)
-        if not numbers[FEASIBLE_KEY]:
-            return Outcome(state=State.INFEASIBLE, metrics=metrics, error="the black box answered: not feasible")
+    values = {
+        name: number for name in objectives if (number := numbers.get(name)) is not None and math.isfinite(number)
+    }
+    verdict: bool | str = True
+    if feasible_output is not None or (flag in entries and flag not in objectives):
+        verdict = _verdict(entries, numbers, flag, feasible_output)
+    if isinstance(verdict, str):
+        return failure(verdict, metrics)
+    if not verdict:
+        return Outcome(state=State.INFEASIBLE, values=values, metrics=metrics, error=NOT_FEASIBLE)
     for name in objectives:
         if name not in entries:
-            returned = ", ".join(map(str, entries)) or "nothing"
-            return failure(f"the result has no '{name}' (it has: {returned})", metrics)
-        value = numbers[name]
-        if value is None or not math.isfinite(value):
+            return failure(_missing(name, entries), metrics)
+        if name not in values:
             return failure(f"'{name}' is {shorten(entries[name])}, not a finite number", metrics)
-    values = {name: number for name in objectives if (number := numbers[name]) is not None}
     return Outcome(state=State.COMPLETED, values=values, metrics=metrics)
 
 
-def _by_name(result: object, objectives: Sequence[str]) -> Mapping[str, object] | str:
+def _verdict(
+    entries: Mapping[str, object], numbers: Mapping[str, float | None], flag: str, output: FeasibleOutput | None
+) -> bool | str:
+    """Return whether a result says that the configuration is feasible, or what is wrong with what it says."""
+    if flag not in entries:
+        return _missing(flag, entries)
+    if output is None:
+        verdict = bool(numbers[flag]) if numbers[flag] in (0.0, 1.0) else None
+        texts = ""
+    else:
+        verdict = output.verdict(entries[flag], numbers[flag])
+        texts = f", nor {output.true_value!r} or {output.false_value!r}"
+    return f"'{flag}' is {shorten(entries[flag])}, neither true nor false{texts}" if verdict is None else verdict
+
+
+def _missing(name: str, entries: Mapping[str, object]) -> str:
+    returned = ", ".join(map(str, entries)) or "nothing"
+    return f"the result has no '{name}' (it has: {returned})"
+
+
+def _by_name(result: object, objectives: Sequence[str], more: Sequence[str]) -> Mapping[str, object] | str:
     """Return the entries of a result by name, or what is wrong with it."""
+    names = [*objectives, *more]
     named = _as_mapping(result)
     if named is not None:
         return named
-    if len(objectives) == 1 and as_number(result) is not None:
-        return {objectives[0]: result}
-    expected = f"expected a mapping with {', '.join(map(repr, objectives))}"
+    if len(names) == 1 and as_number(result) is not None:
+        return {names[0]: result}
+    expected = f"expected a mapping with {', '.join(map(repr, names))}"
     if not _has_an_order(result):
         return f"the result is {shorten(result)}; {expected}"
     items = list(result)
-    if len(items) != len(objectives):
-        return f"the result has {len(items)} numbers for {len(objectives)} objectives; {expected}"
-    return dict(zip(objectives, items, strict=True))
+    if len(items) != len(names):
+        wanted = " and ".join([f"{len(objectives)} objectives", *map(repr, more)])
+        return f"the result has {len(items)} numbers for {wanted}; {expected}"
+    return dict(zip(names, items, strict=True))
 
 
 def _as_mapping(result: Any) -> Mapping[str, object] | None:

@@ -24,6 +24,11 @@ class State(Enum):
     TIMEOUT = "timeout"
     """It ran past its time limit and was killed."""
 
+    @property
+    def is_feasible(self) -> bool | None:
+        """Whether the configuration is allowed; None where that was not found out."""
+        return {State.COMPLETED: True, State.INFEASIBLE: False}.get(self)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
@@ -31,7 +36,7 @@ class Outcome:
 
     state: State
     values: Mapping[str, float] = field(default_factory=dict)
-    """Objective values by name, as the user directed them; empty unless completed."""
+    """Objective values by name, as the user directed them; all of them if completed, any or none if infeasible."""
 
     metrics: Mapping[str, float] = field(default_factory=dict)
     """Extra numbers worth a column."""
@@ -81,7 +86,10 @@ class Evaluation:
     suggestion: Suggestion
     state: State
     values: Mapping[str, float] = field(default_factory=dict)
-    """Mean of each objective over the replicates, as the user directed it; empty unless completed."""
+    """Mean of each objective over the replicates, as the user directed it; all if completed, any if infeasible.
+
+    Those of an infeasible configuration are records only: nothing is learned from them.
+    """
 
     standard_errors: Mapping[str, float] = field(default_factory=dict)
     """Standard error of each mean; NaN with fewer than two replicates."""
@@ -107,5 +115,5 @@ class Evaluation:
 
     @property
     def is_completed(self) -> bool:
-        """Whether it has objective values."""
+        """Whether it has objective values that count."""
         return self.state is State.COMPLETED

@@ -14,6 +14,7 @@ from typing import Any
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, last_line, outcome_of
 from hypermap_lite.evaluation.outcome import Outcome
+from hypermap_lite.objectives import FeasibleOutput
 
 PATH = "$.function"
 EXTRAS = ("seed", "replicate", "trial")
@@ -26,7 +27,7 @@ class PythonFunction:
 
     It returns a mapping with every objective (other numbers become columns of ``evaluations.csv``), a sequence with
     the objectives in their order, or, for one objective, a number. ``{"feasible": False}`` marks a configuration
-    that is not allowed.
+    that is not allowed; a scenario may name another entry for that.
 
     The module is imported in the main process, to find mistakes before the first evaluation, and again in every
     worker: it must not connect to hardware, or anything else that exists once, while it is imported. What it prints
@@ -44,6 +45,9 @@ class PythonFunction:
     objectives: Sequence[str]
     """Names of the objectives."""
 
+    feasible_output: FeasibleOutput | None = None
+    """What says whether a configuration is allowed; None for an entry ``feasible`` that may be left out."""
+
     search_path: Sequence[str] = ()
     """Folders to import from, before all others."""
 
@@ -57,19 +61,25 @@ class PythonFunction:
 
     def __reduce__(self) -> tuple[Callable[..., PythonFunction], tuple[Any, ...]]:
         """Pickle the name rather than what it leads to, so that a worker imports it itself."""
-        return _rebuild, (self.function, tuple(self.objectives), tuple(self.search_path))
+        return _rebuild, (self.function, tuple(self.objectives), self.feasible_output, tuple(self.search_path))
 
     def __call__(self, request: EvaluationRequest) -> Outcome:
         """Call the function once."""
         facts = {"seed": request.seed, "replicate": request.replicate, "trial": request.trial}
         extras = {name: facts[name] for name in self._extras}
-        return outcome_of(self._callable(dict(request.configuration), **extras), self.objectives)
+        result = self._callable(dict(request.configuration), **extras)
+        return outcome_of(result, self.objectives, self.feasible_output)
 
 
 def _rebuild(
-    function: str | Callable[..., object], objectives: Sequence[str], search_path: Sequence[str]
+    function: str | Callable[..., object],
+    objectives: Sequence[str],
+    feasible_output: FeasibleOutput | None,
+    search_path: Sequence[str],
 ) -> PythonFunction:
-    return PythonFunction(function=function, objectives=objectives, search_path=search_path)
+    return PythonFunction(
+        function=function, objectives=objectives, feasible_output=feasible_output, search_path=search_path
+    )
 
 
 def accepted_extras(function: Callable[..., object]) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation
 from hypermap_lite.objectives import Objective, values_of
 from hypermap_lite.space.search_space import SearchSpace
-from hypermap_lite.typing import FloatArray
+from hypermap_lite.typing import BoolArray, FloatArray
 
 LARGEST = 1e150
 """Size at which objective values are cut for the models; the files keep them as they are."""
@@ -72,6 +72,12 @@ class History:
         """
         rows = [values_of(self.objectives, e.values) for e in self.completed]
         return np.clip(np.array(rows).reshape(len(rows), len(self.objectives)), -LARGEST, LARGEST)
+
+    def feasibility(self) -> tuple[FloatArray, BoolArray]:
+        """Return the codes of the completed and infeasible evaluations, shape (n, d), and which are feasible, (n,)."""
+        known = [e for e in self._evaluations if e.state.is_feasible is not None]
+        X = self.space.encode([e.configuration for e in known])
+        return X, np.array([e.is_completed for e in known], dtype=bool)
 
     def X_all(self) -> FloatArray:  # noqa: N802 - the field's name
         """Return the codes of all evaluations, whatever their state, shape (len(self), d)."""

@@ -18,7 +18,7 @@ from hypermap_lite.history.csv_format import (
     parse_values,
     read_records,
 )
-from hypermap_lite.objectives import Objective
+from hypermap_lite.objectives import FeasibleOutput, Objective
 from hypermap_lite.space.search_space import SearchSpace
 
 HISTORY_TAIL = ("prior_weight", "acquisition_value", "suggest_seconds", "evaluate_seconds", "error")
@@ -32,14 +32,18 @@ METRIC_PREFIX = "result."
 
 
 class HistoryFormat:
-    """Columns and rows of ``history.csv`` for one search space and one list of objectives."""
+    """Columns and rows of ``history.csv`` for one search space, one list of objectives and a feasibility, if any."""
 
-    def __init__(self, space: SearchSpace, objectives: Sequence[Objective]) -> None:
+    def __init__(
+        self, space: SearchSpace, objectives: Sequence[Objective], feasible_output: FeasibleOutput | None = None
+    ) -> None:
         self.space = space
         self.names = tuple(o.name for o in objectives)
+        self.flags = flags_of(feasible_output)
         self.columns: tuple[str, ...] = (
             *space.names,
             *self.names,
+            *(flag.name for flag in self.flags),
             *("Timestamp", "trial", "phase", "state", "replicates"),
             *(f"{name}_sem" for name in self.names),
             *HISTORY_TAIL,
@@ -52,6 +56,7 @@ class HistoryFormat:
             [
                 *format_configuration(self.space, suggestion.configuration),
                 *(format_number(evaluation.values.get(name)) for name in self.names),
+                *(flag.text(evaluation.state.is_feasible) for flag in self.flags),
                 *(str(evaluation.timestamp), str(suggestion.trial), suggestion.phase),
                 *(evaluation.state.value, str(evaluation.replicates)),
                 *(format_number(evaluation.standard_errors.get(name)) for name in self.names),
@@ -66,8 +71,10 @@ class HistoryFormat:
     def parse(self, record: Sequence[str]) -> Evaluation:
         """Return the evaluation that a record stands for."""
         d, m = self.space.dimension, len(self.names)
-        timestamp, trial, phase, state, replicates = record[d + m : d + m + 5]
-        weight, acquisition, suggest_seconds, evaluate_seconds, error = record[d + 2 * m + 5 :]
+        facts = d + m + len(self.flags)
+        timestamp, trial, phase, state, replicates = record[facts : facts + 5]
+        weight, acquisition, suggest_seconds, evaluate_seconds, error = record[facts + m + 5 :]
+        check_flags(self.flags, record[d + m : facts], State(state))
         values = parse_values(self.names, record[d : d + m])
         suggestion = Suggestion(
             trial=int(trial),
@@ -81,7 +88,7 @@ class HistoryFormat:
             suggestion=suggestion,
             state=State(state),
             values=values,
-            standard_errors=self._standard_errors(values, record[d + m + 5 : d + 2 * m + 5]),
+            standard_errors=self._standard_errors(values, record[facts + 5 : facts + m + 5]),
             replicates=int(replicates),
             seconds=float(evaluate_seconds),
             timestamp=int(timestamp),
@@ -90,18 +97,29 @@ class HistoryFormat:
 
     def _standard_errors(self, values: Mapping[str, float], fields: Sequence[str]) -> dict[str, float]:
         return {
-            name: float(text) if text else math.nan for name, text in zip(self.names, fields, strict=True) if values
+            name: float(text) if text else math.nan
+            for name, text in zip(self.names, fields, strict=True)
+            if name in values
         }
 
 
 class EvaluationsFormat:
     """Columns and rows of ``evaluations.csv``, which grow by a column per extra number (metric) that turns up."""
 
-    def __init__(self, space: SearchSpace, objectives: Sequence[Objective], metrics: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        space: SearchSpace,
+        objectives: Sequence[Objective],
+        metrics: Sequence[str] = (),
+        *,
+        feasible_output: FeasibleOutput | None = None,
+    ) -> None:
         self.space = space
         self.names = tuple(o.name for o in objectives)
         self.metrics = tuple(metrics)
-        self._head = ("trial", "replicate", "seed", "state", *space.names, *self.names)
+        self.flags = flags_of(feasible_output)
+        flags = (flag.name for flag in self.flags)
+        self._head = ("trial", "replicate", "seed", "state", *space.names, *self.names, *flags)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -124,6 +142,7 @@ class EvaluationsFormat:
                 *(str(replicate.trial), str(replicate.replicate), str(replicate.seed), outcome.state.value),
                 *format_configuration(self.space, replicate.configuration),
                 *(format_number(outcome.values.get(name)) for name in self.names),
+                *(flag.text(outcome.state.is_feasible) for flag in self.flags),
                 *(format_number(outcome.metrics.get(name)) for name in self.metrics),
                 f"{replicate.seconds:.6f}",
                 outcome.error,
@@ -134,10 +153,12 @@ class EvaluationsFormat:
         """Return the replicate that a record stands for."""
         start = 4 + self.space.dimension
         end = start + len(self.names)
+        rest = len(self._head)
+        check_flags(self.flags, record[end:rest], State(record[3]))
         outcome = Outcome(
             state=State(record[3]),
             values=parse_values(self.names, record[start:end]),
-            metrics=parse_values(self.metrics, record[end:-2]),
+            metrics=parse_values(self.metrics, record[rest:-2]),
             error=record[-1],
         )
         return Replicate(
@@ -150,8 +171,27 @@ class EvaluationsFormat:
         )
 
 
-def read_history(path: str | Path, space: SearchSpace, objectives: Sequence[Objective]) -> list[Evaluation]:
+def flags_of(feasible_output: FeasibleOutput | None) -> tuple[FeasibleOutput, ...]:
+    """Return the feasibility as the columns it makes: one or none."""
+    return () if feasible_output is None else (feasible_output,)
+
+
+def check_flags(flags: Sequence[FeasibleOutput], fields: Sequence[str], state: State) -> None:
+    """Raise a `ValueError` if a record's feasibility is not that of its state."""
+    for flag, text in zip(flags, fields, strict=True):
+        if text != flag.text(state.is_feasible):
+            raise ValueError(f"{flag.name} is {text!r}, but the state is {state.value}")
+
+
+def read_history(
+    path: str | Path,
+    space: SearchSpace,
+    objectives: Sequence[Objective],
+    feasible_output: FeasibleOutput | None = None,
+) -> list[Evaluation]:
     """Read a ``history.csv``, given itself or its run folder; an absent file has no rows.
+
+    A file without the column of the feasibility is read all the same.
 
     Raises
     ------
@@ -160,10 +200,12 @@ def read_history(path: str | Path, space: SearchSpace, objectives: Sequence[Obje
     """
     file = Path(path)
     file = file / "history.csv" if file.is_dir() else file
-    form = HistoryFormat(space, objectives)
+    form = HistoryFormat(space, objectives, feasible_output)
     records = read_records(file)
     if not records:
         return []
+    if feasible_output is not None and feasible_output.name not in records[0]:
+        form = HistoryFormat(space, objectives)
     check_header(file, records[0], form.columns)
     rows = parse_rows(file, records, form.parse)
     for number, row in enumerate(rows):

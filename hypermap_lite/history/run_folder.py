@@ -21,7 +21,7 @@ from hypermap_lite.history.lock import FolderLock
 from hypermap_lite.history.rows import EvaluationsFormat, HistoryFormat, check_header, read_history
 from hypermap_lite.history.run_log import run_log
 from hypermap_lite.history.scenario_record import check_scenario, write_scenario
-from hypermap_lite.objectives import Objective, values_of
+from hypermap_lite.objectives import FeasibleOutput, Objective, values_of
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.space.search_space import SearchSpace
 
@@ -46,6 +46,8 @@ class RunFolder:
         The effective scenario as JSON, written beside the results and compared with what is there.
     function
         Name of the Python function that is called in place of the scenario's evaluator, if one was passed.
+    feasible_output
+        The column that says which configurations are feasible, if there is one.
     """
 
     def __init__(
@@ -56,6 +58,7 @@ class RunFolder:
         objectives: Sequence[Objective],
         canonical: Mapping[str, Any],
         function: str | None = None,
+        feasible_output: FeasibleOutput | None = None,
     ) -> None:
         self.path = Path(path).absolute()
         self.objectives = tuple(objectives)
@@ -65,8 +68,9 @@ class RunFolder:
         """Rows of ``history.csv``, trial 0 first."""
         self.replicates: dict[tuple[int, int], Replicate] = {}
         """Rows of ``evaluations.csv`` by trial and replicate."""
-        self._history = HistoryFormat(space, objectives)
-        self._calls = EvaluationsFormat(space, objectives)
+        self.feasible_output = feasible_output
+        self._history = HistoryFormat(space, objectives, feasible_output)
+        self._calls = EvaluationsFormat(space, objectives, feasible_output=feasible_output)
         self._open = ExitStack()
 
     @property
@@ -128,7 +132,7 @@ class RunFolder:
         for path in (self.history_path, self.evaluations_path):
             self._drop_torn_line(path)
         space, objectives = self._history.space, self.objectives
-        self.evaluations = read_history(self.history_path, space, objectives)
+        self.evaluations = read_history(self.history_path, space, objectives, self.feasible_output)
         records = read_records(self.evaluations_path)
         if records:
             self._calls.metrics = self._calls.metrics_in(records[0])

@@ -46,10 +46,10 @@ class Run:
     """The lines of ``history.csv``, as text by column."""
 
     values: FloatArray
-    """Objectives as the user directed them, shape (n, m); NaN unless completed."""
+    """Objectives as the user directed them, shape (n, m); NaN unless completed, measured or not."""
 
     standard_errors: FloatArray
-    """Standard errors of the values, shape (n, m); NaN with fewer than two replicates."""
+    """Standard errors of the values, shape (n, m); NaN with fewer than two replicates and unless completed."""
 
     @property
     def name(self) -> str:
@@ -115,7 +115,9 @@ def load_run(source: str | Path, *, label: str = "") -> Run:
     columns, rows = _read_rows(history_file, required=["state", *(o.name for o in objectives)])
     names = [o.name for o in objectives]
     values = _numbers(rows, names, history_file)
-    values[[row["state"] != "completed" for row in rows]] = np.nan
+    errors = _numbers(rows, [f"{name}_sem" for name in names], history_file)
+    for numbers in (values, errors):
+        numbers[[row["state"] != "completed" for row in rows]] = np.nan
     return Run(
         folder=folder,
         label=label or folder.resolve().name,
@@ -124,7 +126,7 @@ def load_run(source: str | Path, *, label: str = "") -> Run:
         columns=columns,
         rows=rows,
         values=values,
-        standard_errors=_numbers(rows, [f"{name}_sem" for name in names], history_file),
+        standard_errors=errors,
     )
 
 

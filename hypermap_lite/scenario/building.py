@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from hypermap_lite.objectives import Goal, Objective
+from hypermap_lite.errors import ScenarioError
+from hypermap_lite.objectives import FeasibleOutput, Goal, Objective
 from hypermap_lite.scenario.model import (
     AcquisitionSpec,
     BudgetSpec,
@@ -37,6 +38,7 @@ def build_scenario(
         joint_priors=tuple(_component(prior, f"$.priors[{i}]") for i, prior in enumerate(document["priors"])),
         objectives=tuple(_objective(entry) for entry in document["objectives"]),
         design=_design(document["design_of_experiment"]),
+        feasible_output=_feasible_output(document["feasible_output"]),
         budget=BudgetSpec(**document["budget"]),
         optimizer=_component(document["optimizer"], "$.optimizer"),
         surrogate=_component(document["surrogate"], "$.surrogate"),
@@ -84,15 +86,24 @@ def _design(section: Mapping[str, Any]) -> DesignSpec:
     return DesignSpec(type=spec.type, number_of_samples=section["number_of_samples"], options=options)
 
 
+def _feasible_output(entry: Mapping[str, Any] | None) -> FeasibleOutput | None:
+    try:
+        return None if entry is None else FeasibleOutput(**entry)
+    except ScenarioError as error:
+        raise error.below("$.feasible_output") from None
+
+
 def _acquisition(section: Mapping[str, Any]) -> AcquisitionSpec:
     path = "$.acquisition"
-    inner = ("scalarization", "weights", "prior_weighting")
+    inner = ("scalarization", "weights", "prior_weighting", "feasibility_weighting")
     weighting = _component(section["prior_weighting"], f"{path}.prior_weighting", kind="method")
+    by_feasibility = _component(section["feasibility_weighting"], f"{path}.feasibility_weighting", kind="method")
     return AcquisitionSpec(
         function=_component({key: value for key, value in section.items() if key not in inner}, path),
         scalarization=_component(section["scalarization"], f"{path}.scalarization"),
         weights=_component(section["weights"], f"{path}.weights"),
         prior_weighting=None if weighting.type == "none" else weighting,
+        feasibility_weighting=None if by_feasibility.type == "none" else by_feasibility,
     )
 
 

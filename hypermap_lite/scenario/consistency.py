@@ -20,6 +20,7 @@ def check_consistency(document: Mapping[str, Any]) -> None:
     """Raise a `ScenarioError` at the first contradiction between the sections of a filled document."""
     _check_names(document["input_parameters"], document["objectives"])
     _check_permutations(document["input_parameters"])
+    _check_feasible_output(document)
     _check_joint_priors(document["input_parameters"], document["priors"])
     _check_limits(document)
     _check_budget(document)
@@ -50,6 +51,20 @@ def _check_permutations(parameters: Mapping[str, Any]) -> None:
             problem = f"'{name}' is a permutation, which has no {parameter['prior']['type']} prior"
             hint = "A kde among the joint priors can speak of it."
             raise ScenarioError(f"$.input_parameters.{name}.prior", problem, allowed="uniform", hint=hint)
+
+
+def _check_feasible_output(document: Mapping[str, Any]) -> None:
+    output, path = document["feasible_output"], "$.feasible_output.name"
+    if output is None:
+        return
+    name, objectives = output["name"], [objective["name"] for objective in document["objectives"]]
+    hint = "Name what the evaluator answers besides the objectives."
+    for what, names in (("a parameter", document["input_parameters"]), ("an objective", objectives)):
+        if name in names:
+            raise ScenarioError(path, f"{what} is called '{name}' too", allowed="each name once", hint=hint)
+    if name in RESERVED_COLUMNS or name in {f"{objective}_sem" for objective in objectives}:
+        problem = f"'{name}' is the name of a column of the result files"
+        raise ScenarioError(path, problem, allowed="any other name", hint=hint)
 
 
 def _check_joint_priors(parameters: Mapping[str, Any], priors: Sequence[Mapping[str, Any]]) -> None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hypermap_lite.objectives import Objective
+from hypermap_lite.objectives import FeasibleOutput, Objective
 from hypermap_lite.scenario.defaults import is_belief
 from hypermap_lite.scenario.sources import Layer, folders_of, origin_of
 from hypermap_lite.typing import Level, Value
@@ -89,6 +89,9 @@ class AcquisitionSpec:
     prior_weighting: ComponentSpec | None
     """None if priors shall not enter the acquisition."""
 
+    feasibility_weighting: ComponentSpec | None = None
+    """None if infeasible evaluations shall not enter the acquisition."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluatorSpec:
@@ -133,6 +136,9 @@ class Scenario:
     maximizer: ComponentSpec
     evaluator: EvaluatorSpec
     output: OutputSpec
+    feasible_output: FeasibleOutput | None = None
+    """None if there is no column for it; a result may still say that its configuration is not feasible."""
+
     joint_priors: tuple[ComponentSpec, ...] = ()
     constraints: tuple[str, ...] = ()
     """Conditions over the parameters that every configuration meets, as the user wrote them."""

@@ -121,7 +121,11 @@ def _chosen(table: Table, prior: Mapping[str, Any], document: Mapping[str, Any])
     if not table.records:
         raise ScenarioError("$", f"{table.name} has no rows below its header", allowed="at least one usable row")
     objectives = document["objectives"]
-    verdicts = _verdicts(table, {*document["input_parameters"], *(objective["name"] for objective in objectives)})
+    verdicts = _verdicts(
+        table,
+        {*document["input_parameters"], *(objective["name"] for objective in objectives)},
+        document["feasible_output"] or {},
+    )
     if prior["rows"] == "all":
         return _require_some(table, verdicts)
     missing = [objective["name"] for objective in objectives if objective["name"] not in table.header]
@@ -138,12 +142,16 @@ def _chosen(table: Table, prior: Mapping[str, Any], document: Mapping[str, Any])
     return [k for k, keep in zip(rows, is_chosen, strict=True) if keep]
 
 
-def _verdicts(table: Table, own_names: set[str]) -> list[str]:
+def _verdicts(table: Table, own_names: set[str], feasible_output: Mapping[str, str]) -> list[str]:
     """Say of each record why it does not count; nothing if it does."""
     verdicts = [""] * len(table.records)
-    for name in FEASIBILITY_COLUMNS:
+    words: dict[str, tuple[str, ...]] = dict.fromkeys(FEASIBILITY_COLUMNS, NO)
+    if feasible_output:
+        words[feasible_output["name"]] = (feasible_output["false_value"].strip().lower(),)
+    for name, no in words.items():
         if name in table.header and name not in own_names:
-            verdicts = ["infeasible" if text.lower() in NO else "" for text in table.column(name)]
+            texts = table.column(name)
+            verdicts = ["infeasible" if text.lower() in no else old for text, old in zip(texts, verdicts, strict=True)]
     if "state" in table.header and "state" not in own_names:
         states = table.column("state")
         verdicts = [

@@ -21,6 +21,7 @@ def summarize(scenario: Scenario) -> str:
         "constraints": [*scenario.constraints],
         "priors": [line for prior in scenario.joint_priors for line in _joint_prior(prior)],
         "objectives": _objectives(scenario),
+        "feasibility": _feasible_output(scenario),
         "method": _method(scenario),
         "budget": [_budget(scenario)],
         "evaluator": [_evaluator(scenario)],
@@ -89,6 +90,11 @@ def _objectives(scenario: Scenario) -> list[str]:
     return _table(rows)
 
 
+def _feasible_output(scenario: Scenario) -> list[str]:
+    output = scenario.feasible_output
+    return [] if output is None else [f"{output.name}: {output.true_value} or {output.false_value}"]
+
+
 def _method(scenario: Scenario) -> list[str]:
     """Say which evaluations are chosen how, and what of the scenario decides that."""
     total = scenario.budget.evaluations
@@ -110,6 +116,10 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append(f"{m} objectives: {weights}")
     else:
         lines.append("one objective: no scalarization")
+    if acquisition.feasibility_weighting is None:
+        lines.append("infeasible evaluations: not in the acquisition (feasibility_weighting is none)")
+    elif scenario.feasible_output is not None:
+        lines.append("acquisition weighted by the probability of being feasible")
     return [*lines, _prior_use(scenario)]
 
 

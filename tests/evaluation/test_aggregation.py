@@ -1,6 +1,7 @@
 """Tests for aggregation.py."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hypermap_lite.evaluation.aggregation import mean, standard_error, summarize
-from hypermap_lite.evaluation.outcome import State, Suggestion
+from hypermap_lite.evaluation.outcome import Outcome, State, Suggestion
 from tests.evaluation.examples import replicate
 
 SUGGESTION = Suggestion(trial=0, configuration={"x": 0.5}, phase="design")
@@ -40,6 +41,16 @@ def test_one_replicate_has_no_standard_error():
 def test_worst_state_among_the_replicates_counts(calls, state, error):
     row = summarize(SUGGESTION, calls)
     assert (row.state, row.error, row.values, row.standard_errors) == (state, error, {}, {})
+
+
+def test_configuration_with_one_infeasible_replicate_is_infeasible_and_keeps_the_means_of_what_was_measured():
+    measured = Outcome(state=State.INFEASIBLE, values={"f": 4.0}, error="not allowed")
+    calls = [replicate(0, f=1.0, g=3.0), replace(replicate(1), outcome=measured), INFEASIBLE]
+    row = summarize(SUGGESTION, calls)
+    assert (row.state, row.error) == (State.INFEASIBLE, "2 of 3 replicates were infeasible: not allowed")
+    assert row.values == {"f": 2.5, "g": 3.0}
+    assert row.standard_errors["f"] == pytest.approx(1.5)
+    assert math.isnan(row.standard_errors["g"])
 
 
 @given(st.permutations([0.1, 0.2, 0.3, 1e16, -1e16, 3.3]))

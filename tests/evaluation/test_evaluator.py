@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from hypermap_lite.errors import EvaluationError
+from hypermap_lite.errors import EvaluationError, ScenarioError
 from hypermap_lite.evaluation.evaluator import as_number, call, failure, outcome_of
 from hypermap_lite.evaluation.outcome import Outcome, State
+from hypermap_lite.objectives import FeasibleOutput
 from tests.evaluation.examples import request
 
 
@@ -97,6 +98,48 @@ def test_feasible_is_true_or_false_and_nothing_else(answer):
 @pytest.mark.parametrize("yes", [True, 1, np.True_, 1.0])
 def test_feasible_result_is_complete(yes):
     assert outcome_of({"feasible": yes, "f": 1.0}, ["f"]).state is State.COMPLETED
+
+
+VALID = FeasibleOutput(true_value="yes", false_value="1")
+
+
+@pytest.mark.parametrize("answer", [True, np.True_, 1, 1.0, "yes"])
+def test_feasible_output_says_yes_by_truth_or_text(answer):
+    outcome = outcome_of({"f": 1.0, "Valid": answer}, ["f"], VALID)
+    assert outcome == Outcome(state=State.COMPLETED, values={"f": 1.0})
+
+
+@pytest.mark.parametrize("answer", [False, np.False_, 0, 0.0, "1"])
+def test_feasible_output_says_no_and_the_finite_objectives_are_kept(answer):
+    outcome = outcome_of({"f": 1.0, "g": math.nan, "h": "?", "t": 7, "Valid": answer}, ["f", "g", "h"], VALID)
+    assert (outcome.state, outcome.values, outcome.metrics) == (State.INFEASIBLE, {"f": 1.0}, {"t": 7.0})
+
+
+@pytest.mark.parametrize("answer", ["Yes", " yes", "True", "", None, 2, 0.5, math.nan])
+def test_feasible_output_that_is_neither_text_is_a_failure(answer):
+    outcome = outcome_of({"f": 1.0, "Valid": answer}, ["f"], VALID)
+    assert outcome.state is State.FAILED
+    assert outcome.error == f"'Valid' is {answer!r}, neither true nor false, nor 'yes' or '1'"
+
+
+def test_feasible_output_must_be_answered():
+    outcome = outcome_of({"f": 1.0, "feasible": True}, ["f"], VALID)
+    assert (outcome.state, outcome.error) == (State.FAILED, "the result has no 'Valid' (it has: f, feasible)")
+
+
+def test_feasible_output_comes_last_in_a_list():
+    assert outcome_of([1.0, 2.0, True], ["f", "g"], VALID).values == {"f": 1.0, "g": 2.0}
+    outcome = outcome_of([1.0, 2.0], ["f", "g"], VALID)
+    assert "the result has 2 numbers for 2 objectives and 'Valid'" in outcome.error
+
+
+def test_texts_for_yes_and_no_must_differ():
+    with pytest.raises(ScenarioError, match=r"\$\.false_value: feasible and infeasible are both called 'a'"):
+        FeasibleOutput(true_value="a", false_value="a")
+
+
+def test_infeasible_result_keeps_its_objectives_without_a_column_for_it_too():
+    assert outcome_of({"f": 1.0, "feasible": False}, ["f"]).values == {"f": 1.0}
 
 
 def test_objective_may_be_called_feasible():

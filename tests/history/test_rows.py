@@ -2,6 +2,7 @@
 
 import csv
 import io
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -11,6 +12,7 @@ from hypermap_lite.errors import RunFolderError
 from hypermap_lite.evaluation.outcome import Evaluation, Outcome, Replicate, State, Suggestion
 from hypermap_lite.history.csv_format import format_record
 from hypermap_lite.history.rows import EvaluationsFormat, HistoryFormat, read_history
+from hypermap_lite.objectives import FeasibleOutput
 from tests.history.examples import OBJECTIVES, SPACE, evaluation, replicate
 
 HISTORY = HistoryFormat(SPACE, OBJECTIVES)
@@ -44,7 +46,17 @@ evaluations = st.one_of(
         timestamp=st.integers(0, 2**53),
     ),
     st.builds(Evaluation, suggestion=suggestions, state=st.just(State.FAILED), error=st.text()),
+    st.builds(Evaluation, suggestion=suggestions, state=st.just(State.INFEASIBLE), error=st.text()),
+    st.builds(
+        Evaluation,
+        suggestion=suggestions,
+        state=st.just(State.INFEASIBLE),
+        values=st.fixed_dictionaries({"cost": finite}),
+        standard_errors=st.fixed_dictionaries({"cost": finite}),
+        error=st.text(),
+    ),
 )
+FLAG = FeasibleOutput(name="fits", true_value="yes, it does", false_value="0")
 calls = st.builds(
     Replicate,
     trial=st.integers(0, 10_000),
@@ -66,14 +78,14 @@ def fields_of(record: str) -> list[str]:
     return next(csv.reader(io.StringIO(record, newline="")))
 
 
-@given(evaluations)
-def test_evaluations_round_trip_exactly(row):
-    assert HISTORY.parse(fields_of(HISTORY.format(row))) == row
+@given(evaluations, st.sampled_from([HISTORY, HistoryFormat(SPACE, OBJECTIVES, FLAG)]))
+def test_evaluations_round_trip_exactly(row, form):
+    assert form.parse(fields_of(form.format(row))) == row
 
 
-@given(calls)
-def test_replicates_round_trip_exactly(row):
-    form = EvaluationsFormat(SPACE, OBJECTIVES, tuple(row.outcome.metrics))
+@given(calls, st.sampled_from([None, FLAG]))
+def test_replicates_round_trip_exactly(row, flag):
+    form = EvaluationsFormat(SPACE, OBJECTIVES, tuple(row.outcome.metrics), feasible_output=flag)
     assert form.parse(fields_of(form.format(row))) == row
     assert form.metrics_in(form.columns) == form.metrics
     assert len(set(form.columns)) == len(form.columns)
@@ -85,6 +97,30 @@ def test_history_columns_begin_as_hypermapper_wrote_them():
         *("trial", "phase", "state", "replicates", "reward_sem", "cost_sem", "prior_weight", "acquisition_value"),
         *("suggest_seconds", "evaluate_seconds", "error"),
     )
+
+
+def test_feasibility_stands_between_the_objectives_and_the_time():
+    form = HistoryFormat(SPACE, OBJECTIVES, FeasibleOutput())
+    assert form.columns[4:8] == ("reward", "cost", "Valid", "Timestamp")
+    calls = EvaluationsFormat(SPACE, OBJECTIVES, ("speed",), feasible_output=FeasibleOutput())
+    assert calls.columns[-6:] == ("reward", "cost", "Valid", "speed", "seconds", "error")
+    rows = [evaluation(0), replace(evaluation(1), state=State.INFEASIBLE), evaluation(2, None)]
+    assert [fields_of(form.format(row))[6] for row in rows] == ["True", "False", ""]
+
+
+def test_feasibility_that_is_not_that_of_the_state_is_an_error(tmp_path):
+    form = HistoryFormat(SPACE, OBJECTIVES, FeasibleOutput())
+    record = form.format(evaluation(0)).replace("True", "False")
+    (tmp_path / "history.csv").write_text(format_record(form.columns) + record)
+    with pytest.raises(RunFolderError, match="record 2 cannot be read: Valid is 'False', but the state is completed"):
+        read_history(tmp_path, SPACE, OBJECTIVES, FeasibleOutput())
+
+
+def test_history_without_the_column_of_the_feasibility_is_read_all_the_same(tmp_path):
+    rows = [evaluation(0), replace(evaluation(1), state=State.INFEASIBLE)]
+    (tmp_path / "history.csv").write_text(format_record(HISTORY.columns) + "".join(map(HISTORY.format, rows)))
+    back = read_history(tmp_path, SPACE, OBJECTIVES, FeasibleOutput())
+    assert [(row.state, row.values) for row in back] == [(row.state, row.values) for row in rows]
 
 
 def test_standard_error_of_one_replicate_is_an_empty_field():

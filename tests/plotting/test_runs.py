@@ -171,3 +171,11 @@ def test_byte_order_mark_of_a_spreadsheet_program_does_no_harm(folder):
 
 def test_scenario_is_read_as_written(folder):
     assert load_run(folder).scenario == json.loads((folder / "scenario.json").read_text())
+
+
+def test_values_of_an_infeasible_evaluation_are_no_values(tmp_path):
+    folder = write_run(tmp_path, [[1, 2], [9, 9]], states=["completed", "infeasible"], sem=np.ones((2, 2)))
+    run = load_run(folder)
+    assert run.is_completed.tolist() == run.is_front.tolist() == [True, False]
+    assert np.isnan(run.values[1]).all()
+    assert np.isnan(run.standard_errors[1]).all()

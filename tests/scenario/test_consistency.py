@@ -32,6 +32,24 @@ def test_a_parameter_may_not_be_called_like_the_standard_error_of_an_objective()
         complete(input_parameters={"cost_sem": GOOD["input_parameters"]["x"]})
 
 
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("x", "a parameter is called 'x' too"),
+        ("cost", "an objective is called 'cost' too"),
+        ("Timestamp", "'Timestamp' is the name of a column"),
+        ("cost_sem", "'cost_sem' is the name of a column"),
+    ],
+)
+def test_the_feasible_output_has_a_name_of_its_own(name: str, problem: str) -> None:
+    with pytest.raises(ScenarioError, match=rf"\$\.feasible_output\.name: {problem}"):
+        complete(feasible_output={"name": name})
+
+
+def test_the_feasible_output_may_be_called_feasible() -> None:
+    check_consistency(complete(feasible_output={"name": "feasible"}))
+
+
 def test_two_joint_priors_may_not_share_a_parameter() -> None:
     prior = {"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}
     with pytest.raises(ScenarioError, match=r"\$\.priors\[1\].*'x' already has a prior at \$\.priors\[0\]"):

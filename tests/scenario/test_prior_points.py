@@ -272,3 +272,10 @@ def test_a_mistake_is_one_short_message_and_exit_status_2(
     assert [part for part in ("bad.json: $.priors[0]", *says) if part not in message] == [], message
     assert len(message.splitlines()) <= 4
     assert "Traceback" not in message
+
+
+def test_a_row_whose_feasible_output_says_no_does_not_count() -> None:
+    write(header="x,n,size,mode,cost,gain,fits", rows=("0,2,32,safe,0,9,N", "1,3,64,safe,1,1,Y", "2,3,64,safe,1,1,n"))
+    output = {"name": "fits", "true_value": "Y", "false_value": "N"}
+    (prior,) = load_scenario(with_density() | {"feasible_output": output}).joint_priors
+    assert prior.options["points"]["x"] == [1.0]

@@ -49,6 +49,16 @@ def test_unused_priors_are_said_to_be_so() -> None:
     assert "not in the acquisition" in page(priors=priors, acquisition={"prior_weighting": "none"})
 
 
+def test_the_feasibility_has_a_line_and_a_part_in_the_method() -> None:
+    text = page(feasible_output={"name": "fits", "true_value": "1", "false_value": "0"})
+    assert "feasibility fits: 1 or 0\n" in text
+    assert "acquisition weighted by the probability of being feasible" in text
+    assert "not in the acquisition (feasibility_weighting is none)" in page(
+        acquisition={"feasibility_weighting": "none"}
+    )
+    assert "feasib" not in page()
+
+
 def test_a_search_without_a_model_names_no_acquisition() -> None:
     text = page(optimizer="random_search")
     assert "evaluations 9 to 50: random_search" in text
