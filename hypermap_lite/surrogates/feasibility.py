@@ -1,0 +1,248 @@
+"""How likely a configuration is feasible, learned from which evaluations were."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import log_ndtr
+
+from hypermap_lite.surrogates.kernels import MaternHammingKernel
+from hypermap_lite.surrogates.laplace import Laplace
+from hypermap_lite.surrogates.linear_algebra import solve_lower
+from hypermap_lite.surrogates.marginal_likelihood import LENGTHSCALE_BOUNDS, HyperPrior
+from hypermap_lite.typing import BoolArray, FloatArray
+
+IndexArray: TypeAlias = NDArray[np.intp]
+
+LOG_SQRT_2PI: Final = 0.5 * math.log(2 * math.pi)
+VARIANCE_FLOOR: Final = 1e-9
+VARIANCE_BOUNDS: Final = (0.1, 1000.0)
+"""Of the latent function."""
+
+MAX_ITERATIONS: Final = 30
+MAX_ROWS: Final = 400
+"""Evaluations the model rests on; of more, the telling ones are taken."""
+
+MAX_ROWS_OF_FIT: Final = 128
+"""Evaluations the hyperparameters are fitted to."""
+
+
+class FeasibilityPosterior(Protocol):
+    """What is known of which points are feasible. Immutable."""
+
+    @property
+    def is_differentiable(self) -> bool:
+        """Whether it has gradients."""
+        ...
+
+    def log_probability(self, X: FloatArray) -> FloatArray:
+        """Return the log probability that each of n points is feasible, shape (n, d) to (n,)."""
+        ...
+
+    def log_probability_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log probabilities, shape (n,), and their gradients, shape (n, d)."""
+        ...
+
+    def log_spread(self, X: FloatArray) -> FloatArray:
+        """Return the log of how uncertain the feasibility of n points is, relative to no evaluation, shape (n,)."""
+        ...
+
+    def log_spread_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log uncertainties, shape (n,), and their gradients, shape (n, d)."""
+        ...
+
+
+class FeasibilityModel(Protocol):
+    """Options of a model of the feasibility."""
+
+    def fit(self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray) -> FeasibilityPosterior:
+        """Fit n evaluations, n >= 1, which may all be of one kind.
+
+        Parameters
+        ----------
+        X
+            Points of the unit cube, shape (n, d).
+        is_feasible
+            Which of them were feasible, shape (n,).
+        is_ordered
+            Which axes have an order, shape (d,); the others are categorical.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProbitProcess:
+    r"""Gaussian process classification by the Laplace approximation [1]_.
+
+    .. math:: P(x \text{ feasible}) = \Phi(\mu(x) / \sqrt{1 + \sigma^2(x)})
+
+    with mean and variance of a latent function, a Matern-5/2 process with one lengthscale per axis around an unknown
+    constant. Lengthscales and variance are the most likely ones a posteriori; if all points are of one kind, which
+    says nothing about them, they stay at the mode of their priors, and the probability falls (or rises) next to the
+    points and is undecided far away.
+
+    References
+    ----------
+    .. [1] Rasmussen, Williams. Gaussian Processes for Machine Learning, ch. 3. MIT Press, 2006.
+    """
+
+    constant_variance: float = 4.0
+    """Prior variance of the latent constant: how unequal the shares of the two kinds may be."""
+
+    variance: float = 4.0
+    """Median of the prior of the latent function's variance: large values make steep boundaries."""
+
+    def fit(self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray) -> ProbitPosterior:
+        """Fit n evaluations; see `FeasibilityModel.fit`."""
+        labels = np.where(is_feasible, 1.0, -1.0)
+        theta = self._mode(X.shape[1])
+        if is_feasible.any() and not is_feasible.all():
+            rows = telling_rows(X, is_feasible, is_ordered, MAX_ROWS_OF_FIT)
+            theta = self._fit(theta, Evidence(X[rows], labels[rows], is_ordered, self))
+        rows = telling_rows(X, is_feasible, is_ordered, MAX_ROWS)
+        kernel = MaternHammingKernel(np.exp(theta[:-1]), is_ordered)
+        variance = math.exp(theta[-1])
+        K = variance * kernel(X[rows], X[rows]) + self.constant_variance
+        laplace = Laplace.at(K, labels[rows])
+        return ProbitPosterior(
+            X=X[rows], kernel=kernel, variance=variance, constant_variance=self.constant_variance, laplace=laplace
+        )
+
+    def _mode(self, dimension: int) -> FloatArray:
+        """Return the log hyperparameters before any data, shape (d + 1,): lengthscales, variance."""
+        return np.log([*HyperPrior(dimension).mode().lengthscales, self.variance])
+
+    def _fit(self, start: FloatArray, evidence: Evidence) -> FloatArray:
+        from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
+
+        bounds = np.log([*[LENGTHSCALE_BOUNDS] * (len(start) - 1), VARIANCE_BOUNDS])
+        options = {"maxiter": MAX_ITERATIONS}
+        result = minimize(evidence, start, jac=True, method="L-BFGS-B", bounds=bounds, options=options)
+        return np.asarray(result.x) if np.isfinite(result.fun) else start
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """The negative log posterior of the hyperparameters."""
+
+    X: FloatArray
+    labels: FloatArray
+    is_ordered: BoolArray
+    model: ProbitProcess
+
+    def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
+        """Return the value and its gradient by the log hyperparameters, shape (d + 1,)."""
+        kernel, variance = MaternHammingKernel(np.exp(theta[:-1]), self.is_ordered), math.exp(theta[-1])
+        C, H = kernel.parts(self.X, self.X)
+        laplace = Laplace.at(variance * C + self.model.constant_variance, self.labels)
+        M = laplace.evidence_weights()
+        gradient = -variance * np.append(kernel.pull_log_lengthscales(M, C, H, self.X), np.vdot(M, C))
+        penalty, slope = self._penalty(theta)
+        return penalty - laplace.log_evidence, gradient + slope
+
+    def _penalty(self, theta: FloatArray) -> tuple[float, FloatArray]:
+        """Return the negative log prior: that of all lengthscales here, and log variance normal with width 1."""
+        prior = HyperPrior(len(theta) - 1)
+        z = (theta[:-1] - prior.lengthscale_mu) / prior.lengthscale_sigma
+        excess = theta[-1] - math.log(self.model.variance)
+        value = 0.5 * z @ z + theta[:-1].sum() + 0.5 * excess**2
+        return float(value), np.append(z / prior.lengthscale_sigma + 1.0, excess)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProbitPosterior:
+    """The latent function given the evaluations."""
+
+    X: FloatArray
+    """Evaluations it rests on, shape (n, d)."""
+
+    kernel: MaternHammingKernel
+    variance: float
+    constant_variance: float
+    laplace: Laplace
+
+    @property
+    def is_differentiable(self) -> bool:
+        """True."""
+        return True
+
+    def log_probability(self, X: FloatArray) -> FloatArray:
+        """Return the log probability that each of n points is feasible, shape (n,)."""
+        latent = self._latent(X)
+        return np.asarray(log_ndtr(latent.mean / np.sqrt(1.0 + latent.variance)))
+
+    def log_probability_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log probabilities, shape (n,), and their gradients, shape (n, d)."""
+        latent = self._latent(X)
+        width = np.sqrt(1.0 + latent.variance)
+        z = latent.mean / width
+        value = np.asarray(log_ndtr(z))
+        by_z = np.exp(-0.5 * z * z - LOG_SQRT_2PI - value)
+        return value, self._pull(latent, X, by_z / width, -0.5 * by_z * z / width**2)
+
+    def log_spread(self, X: FloatArray) -> FloatArray:
+        """Return the log of the latent standard deviation relative to that before any evaluation, shape (n,)."""
+        return 0.5 * np.log(self._latent(X).variance / (self.variance + self.constant_variance))
+
+    def log_spread_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log spreads, shape (n,), and their gradients, shape (n, d)."""
+        latent = self._latent(X)
+        value = 0.5 * np.log(latent.variance / (self.variance + self.constant_variance))
+        return value, self._pull(latent, X, np.zeros(len(X)), 0.5 / latent.variance)
+
+    def _latent(self, X: FloatArray) -> Latent:
+        C, H = self.kernel.parts(X, self.X)
+        k = self.variance * C + self.constant_variance  # (n, b)
+        v = solve_lower(self.laplace.L, (k * self.laplace.root).T)  # (b, n)
+        total = self.variance + self.constant_variance
+        variance = np.maximum(total - np.einsum("bn,bn->n", v, v), VARIANCE_FLOOR)
+        return Latent(k @ self.laplace.slope, variance, v, H)
+
+    def _pull(self, latent: Latent, X: FloatArray, by_mean: FloatArray, by_variance: FloatArray) -> FloatArray:
+        """Return the gradient by X of a function of mean and variance, shape (n, d)."""
+        u = solve_lower(self.laplace.L, latent.v, transposed=True).T * self.laplace.root  # (n, b)
+        by_k = by_mean[:, None] * self.laplace.slope - 2.0 * by_variance[:, None] * u
+        return self.kernel.pull_coordinates(self.variance * by_k * latent.H, X, self.X)
+
+
+@dataclass(frozen=True, slots=True)
+class Latent:
+    """The latent function at n points."""
+
+    mean: FloatArray
+    variance: FloatArray
+    v: FloatArray
+    H: FloatArray
+
+
+def telling_rows(X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray, n: int) -> IndexArray:
+    """Return the positions of up to n points that say most about the boundary, rising, shape (<= n,).
+
+    All of the rarer kind, or n / 2 of them evenly spaced in time; of the other kind, half are those closest to the
+    rarer one, half evenly spaced in time.
+    """
+    if len(X) <= n:
+        return np.arange(len(X))
+    rare = is_feasible if is_feasible.sum() * 2 <= len(X) else ~is_feasible
+    few, many = np.flatnonzero(rare), np.flatnonzero(~rare)
+    few = evenly(few, n // 2)
+    n_many = n - len(few)
+    if len(few):
+        lengthscales = HyperPrior(X.shape[1]).mode().lengthscales
+        closeness = MaternHammingKernel(lengthscales, is_ordered)(X[many], X[few]).max(axis=1)
+        order = np.argsort(-closeness, kind="stable")
+        close, rest = many[order[: n_many // 2]], np.sort(many[order[n_many // 2 :]])
+    else:
+        close, rest = few, many
+    return np.sort(np.concatenate([few, close, evenly(rest, n_many - len(close))]))
+
+
+def evenly(positions: IndexArray, n: int) -> IndexArray:
+    """Return n evenly spaced entries of a longer array, or all of a shorter one."""
+    if len(positions) <= n:
+        return positions
+    return positions[np.linspace(0, len(positions) - 1, n).round().astype(int)]

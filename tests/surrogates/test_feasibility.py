@@ -1,0 +1,101 @@
+"""Tests for feasibility.py."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite.surrogates.feasibility import MAX_ROWS, ProbitProcess, telling_rows
+
+ORDERED = np.ones(2, dtype=bool)
+MIXED = np.array([True, True, False])
+
+
+def in_the_band(X):
+    """Tell which points are in the feasible sixth of Chakong and Haimes' problem."""
+    x, y = 40 * X[:, 0] - 20, 40 * X[:, 1] - 20
+    return (x**2 + y**2 <= 225) & (x - 3 * y + 10 <= 0)
+
+
+def fitted(n=40, seed=0):
+    X = np.random.default_rng(seed).random((n, 2))
+    return ProbitProcess().fit(X, in_the_band(X), is_ordered=ORDERED)
+
+
+@pytest.mark.parametrize("name", ["log_probability", "log_spread"])
+def test_gradients_are_those_of_finite_differences_and_zero_along_categories(name) -> None:
+    rng = np.random.default_rng(1)
+    X = rng.random((30, 3))
+    X[:, 2] = np.round(X[:, 2])
+    posterior = ProbitProcess().fit(X, X[:, 0] + 0.3 * X[:, 2] > 0.6, is_ordered=MIXED)
+    at, h = rng.random((7, 3)), 1e-6
+    at[:, 2] = 1.0
+    value, gradient = getattr(posterior, f"{name}_with_gradient")(at)
+    np.testing.assert_array_equal(value, getattr(posterior, name)(at))
+    for j in (0, 1):
+        step = h * np.eye(3)[j]
+        numeric = (getattr(posterior, name)(at + step) - getattr(posterior, name)(at - step)) / (2 * h)
+        np.testing.assert_allclose(gradient[:, j], numeric, atol=1e-5)
+    assert not gradient[:, 2].any()
+
+
+def test_probability_is_learned_and_calibrated() -> None:
+    T = np.random.default_rng(9).random((4000, 2))
+    is_feasible = in_the_band(T)
+    log_losses, gaps = [], []
+    for seed in range(4):
+        p = np.exp(fitted(40, seed).log_probability(T))
+        log_losses.append(-np.where(is_feasible, np.log(p), np.log1p(-p)).mean())
+        sure = p < 0.1
+        gaps.append(is_feasible[sure].mean())
+    assert np.mean(log_losses) < 0.33  # 0.44 for the share of feasible points everywhere
+    assert np.mean(gaps) < 0.1
+
+
+@pytest.mark.parametrize("n", [1, 2, 12])
+def test_infeasible_points_alone_lower_the_probability_around_them_most(n) -> None:
+    X = np.vstack([[0.3, 0.3], 0.5 * np.random.default_rng(2).random((n - 1, 2))])
+    posterior = ProbitProcess().fit(X, np.zeros(n, dtype=bool), is_ordered=ORDERED)
+    near, far = np.exp(posterior.log_probability(np.array([[0.3, 0.3], [1.0, 1.0]])))
+    assert 0 < near < far < 0.5
+    spread = posterior.log_spread(np.array([[0.3, 0.3], [1.0, 1.0]]))
+    assert spread[0] < spread[1] <= 0
+
+
+def test_feasible_points_alone_raise_it() -> None:
+    posterior = ProbitProcess().fit(np.array([[0.3, 0.3]]), np.array([True]), is_ordered=ORDERED)
+    near, far = np.exp(posterior.log_probability(np.array([[0.3, 0.3], [1.0, 1.0]])))
+    assert 0.5 < far < near < 1
+
+
+def test_first_infeasible_point_among_feasible_ones_is_avoided() -> None:
+    X = np.array([[0.1, 0.1], [0.1, 0.5], [0.3, 0.2], [0.9, 0.9]])
+    posterior = ProbitProcess().fit(X, np.array([True, True, True, False]), is_ordered=ORDERED)
+    bad, good = np.exp(posterior.log_probability(np.array([[0.9, 0.9], [0.15, 0.3]])))
+    assert bad < 0.5 < 0.8 < good
+
+
+def test_a_category_that_was_always_infeasible_is_avoided() -> None:
+    X = np.random.default_rng(3).random((24, 3))
+    X[:, 2] = np.arange(24) % 3 / 3
+    posterior = ProbitProcess().fit(X, X[:, 2] > 0.5, is_ordered=MIXED)
+    p = np.exp(posterior.log_probability(np.array([[0.5, 0.5, 0.0], [0.5, 0.5, 2 / 3]])))
+    assert p[0] < 0.2
+    assert p[1] > 0.7
+
+
+def test_the_model_of_many_points_rests_on_the_telling_ones() -> None:
+    X = np.random.default_rng(4).random((1000, 2))
+    is_feasible = in_the_band(X) & (X[:, 0] < 0.35)
+    rows = telling_rows(X, is_feasible, ORDERED, MAX_ROWS)
+    assert len(rows) == MAX_ROWS == len(set(rows.tolist()))
+    assert set(np.flatnonzero(is_feasible)) <= set(rows)
+    posterior = ProbitProcess().fit(X, is_feasible, is_ordered=ORDERED)
+    assert len(posterior.X) == MAX_ROWS
+    p = np.exp(posterior.log_probability(X))
+    assert np.mean((p > 0.5) == is_feasible) > 0.98
+
+
+def test_points_of_one_kind_are_thinned_evenly() -> None:
+    X = np.random.default_rng(5).random((1000, 2))
+    rows = telling_rows(X, np.zeros(1000, dtype=bool), ORDERED, 11)
+    assert len(rows) == 11
+    assert len(set(rows.tolist())) == 11
