@@ -6,6 +6,7 @@ from typing import Final
 from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, PriorWeighting, Scorer
 from hypermap_lite.acquisition.bopro import Bopro
 from hypermap_lite.acquisition.expected_improvement import ExpectedImprovement
+from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighted, FeasibilityWeighting
 from hypermap_lite.acquisition.noisy_expected_improvement import NoisyExpectedImprovement
 from hypermap_lite.acquisition.prior_weighted import Pibo, PriorWeighted
 from hypermap_lite.acquisition.thompson_sampling import ThompsonSampling
@@ -25,6 +26,8 @@ __all__ = [
     "AcquisitionContext",
     "Bopro",
     "ExpectedImprovement",
+    "FeasibilityWeighted",
+    "FeasibilityWeighting",
     "NoisyExpectedImprovement",
     "Pibo",
     "PriorWeighted",

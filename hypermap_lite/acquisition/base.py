@@ -7,7 +7,7 @@ drawn at random is drawn once.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization, Scalarization
@@ -59,6 +59,9 @@ class Scorer(Protocol):
 class Acquisition(Protocol):
     """Options of an acquisition function."""
 
+    is_logarithmic: ClassVar[bool]
+    """Whether its scores are logarithms of a positive utility, so that a product is a sum."""
+
     def scorer(self, context: AcquisitionContext) -> Scorer:
         """Become the scorer of one suggestion."""
         ...
@@ -75,4 +78,8 @@ class PriorWeighting(Protocol):
         self, acquisition: Acquisition, context: AcquisitionContext, prior: ProductPrior, weight: float
     ) -> Scorer:
         """Become the scorer of one suggestion: the acquisition function's, changed by the prior, or another."""
+        ...
+
+    def weigh(self, scorer: Scorer, prior: ProductPrior, weight: float) -> Scorer:
+        """Return a scorer in log form times the prior, for a choice that has no acquisition function."""
         ...

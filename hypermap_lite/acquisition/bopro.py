@@ -10,6 +10,7 @@ from scipy.special import erfcx, log_expit, log_ndtr
 
 from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
 from hypermap_lite.acquisition.improvement import SMOOTHING, log_sum_exp
+from hypermap_lite.acquisition.prior_weighted import PriorWeighted
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization, Scalarization
@@ -90,6 +91,10 @@ class Bopro:
                 is_differentiable=posterior.is_differentiable,
             )
         return BoproScorer(good=good, prior=prior, model_share=1.0 / weight, floor=self.floor)
+
+    def weigh(self, scorer: Scorer, prior: ProductPrior, weight: float) -> PriorWeighted:
+        """Return a scorer in log form times the prior's density: without a model the prior decides alone."""
+        return PriorWeighted(inner=scorer, prior=prior, weight=1.0, floor=self.floor)
 
     def _threshold(self, values: FloatArray) -> float:
         """Return below what an objective is good: an observed value, so that no known place is far below it."""

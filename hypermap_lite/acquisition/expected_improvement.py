@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -26,6 +27,8 @@ class ExpectedImprovement:
 
     samples: int = 64
     """Joint samples, used with a scalarization that is not linear."""
+
+    is_logarithmic: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         check_samples(self.samples)

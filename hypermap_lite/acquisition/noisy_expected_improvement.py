@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -30,6 +31,8 @@ class NoisyExpectedImprovement:
 
     samples: int = 64
     """Draws of the noise-free values; a forest has as many as trees instead."""
+
+    is_logarithmic: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         check_samples(self.samples)

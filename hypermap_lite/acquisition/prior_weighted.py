@@ -47,7 +47,11 @@ class Pibo:
         self, acquisition: Acquisition, context: AcquisitionContext, prior: ProductPrior, weight: float
     ) -> PriorWeighted:
         """Become the scorer of one suggestion."""
-        return PriorWeighted(inner=acquisition.scorer(context), prior=prior, weight=weight, floor=self.floor)
+        return self.weigh(acquisition.scorer(context), prior, weight)
+
+    def weigh(self, scorer: Scorer, prior: ProductPrior, weight: float) -> PriorWeighted:
+        """Return any scorer with the prior in it."""
+        return PriorWeighted(inner=scorer, prior=prior, weight=weight, floor=self.floor)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

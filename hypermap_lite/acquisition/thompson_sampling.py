@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
 from hypermap_lite.acquisition.scalarized_field import ScalarizedField
@@ -20,6 +21,8 @@ class ThompsonSampling:
 
     features: int = 1024
     """Random features of a drawn function; a forest draws a tree instead."""
+
+    is_logarithmic: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         if self.features < 1:

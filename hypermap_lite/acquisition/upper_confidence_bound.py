@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
 from hypermap_lite.acquisition.scalarized_field import ScalarizedField
@@ -31,6 +32,8 @@ class UpperConfidenceBound:
 
     Or ``logarithmic``: sqrt(ln(2 t + 1) / 8) at the t-th model-based batch [2]_, as HyperMapper has it.
     """
+
+    is_logarithmic: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         is_number = isinstance(self.beta, int | float)

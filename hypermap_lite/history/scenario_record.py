@@ -43,6 +43,9 @@ def _pattern(places: Iterable[str]) -> re.Pattern[str]:
 
 _FREE: Final = _pattern(MAY_DIFFER)
 
+ADDED_LATER: Final = {"$.acquisition.feasibility_weighting.method": '"probability"'}
+"""Options that scenarios of older versions did not have, and the default (as JSON) they are taken to have."""
+
 MEASURES: Final = ("$.objectives[*].reference_point",)
 """Parts of a scenario that decide how a finished run is measured; in a running one they also guide the search."""
 
@@ -147,7 +150,7 @@ def differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[tuple[
     """Yield place, old and new value (as JSON) of each difference between two scenarios that matters."""
     before, after = dict(_leaves("$", old)), dict(_leaves("$", new))
     for place in [*before, *(p for p in after if p not in before)]:
-        values = before.get(place, MISSING), after.get(place, MISSING)
+        values = before.get(place, ADDED_LATER.get(place, MISSING)), after.get(place, MISSING)
         # null and no items are the default everywhere, so an option that an older version did not have yet is no
         # difference
         if not _FREE.fullmatch(place) and values[0] != values[1] and not set(values) <= {MISSING, "null", "[]"}:

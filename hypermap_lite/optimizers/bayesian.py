@@ -9,8 +9,16 @@ from typing import Any
 import numpy as np
 
 from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, PriorWeighting, Scorer
+from hypermap_lite.acquisition.feasibility_weighted import (
+    FeasibilitySearch,
+    FeasibilityWeighted,
+    FeasibilityWeighting,
+    Improving,
+    optimistic_ideal,
+)
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.random_sampling import RandomSampling
+from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, Maximizer
@@ -21,16 +29,20 @@ from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization, Scalarization, WeightSampling
 from hypermap_lite.surrogates.base import Posterior, Surrogate
+from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.typing import FloatArray, Rng
 
 MODEL = "model"
 """Phase of a suggestion that comes from the model."""
 
 MIN_COMPLETED = 2
-"""With fewer completed evaluations there is nothing to model."""
+"""With fewer completed evaluations there is no objective to model."""
 
 MAX_INCUMBENTS = 8
 """Best points whose surroundings are searched."""
+
+IDEAL_POINTS = 512
+"""Points at which the ideal values of a constrained problem are looked for."""
 
 FIRST_MILESTONE = 8
 MILESTONE_GROWTH = 1.5
@@ -51,6 +63,9 @@ class Method:
     weights: WeightSampling
     prior_weighting: PriorWeighting | None
     """None leaves the prior out of the acquisition."""
+
+    feasibility_weighting: FeasibilityWeighting | None
+    """None leaves infeasible evaluations out of the acquisition."""
 
     maximizer: Maximizer
     fallback: InitialDesign
@@ -106,6 +121,7 @@ class BayesianOptimizer(Optimizer):
         self._seed = seed
         self._warm_starts: dict[int, Any] = {}
         self._posterior_of: tuple[int, Posterior] | None = None
+        self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
     def _suggest(self, trial: int) -> Suggestion | None:
         if trial < len(self._initial):
@@ -115,9 +131,14 @@ class BayesianOptimizer(Optimizer):
             if rng.random() < self._method.epsilon:
                 return self._drawn_by(RandomSampling(), trial, rng)
         rng = generator(self._seed, Stream.SUGGESTION, trial)
-        if len(self.history.completed) < MIN_COMPLETED:
-            return self._drawn_by(self._method.fallback, trial, rng)
-        return self._with_model(trial, rng)
+        has_objectives = len(self.history.completed) >= MIN_COMPLETED
+        feasibility = self._feasibility(is_searching=not has_objectives)
+        if has_objectives:
+            context = self._context(rng, feasibility)
+            return self._by_score(self._scorer(context, feasibility), self._incumbents(context), trial, rng)
+        if feasibility is not None:
+            return self._by_score(self._searching(feasibility), self.history.X(), trial, rng)
+        return self._drawn_by(self._method.fallback, trial, rng)
 
     def _drawn_by(self, design: InitialDesign, trial: int, rng: Rng) -> Suggestion | None:
         """Return a new point of a design instead of one by the model; None if there is none."""
@@ -128,16 +149,32 @@ class BayesianOptimizer(Optimizer):
             return None
         return Suggestion(trial=trial, configuration=space.decode(new[:1])[0], phase="random")
 
-    def _with_model(self, trial: int, rng: Rng) -> Suggestion | None:
+    def _scorer(self, context: AcquisitionContext, feasibility: FeasibilityPosterior | None) -> Scorer:
+        """Return the acquisition function, with the prior and the probability of being feasible where they count."""
+        acquisition, weighting, weight = self._method.acquisition, self._method.prior_weighting, self._prior_weight()
+        if feasibility is not None and not acquisition.is_logarithmic:
+            acquisition = Improving(acquisition)
+        if weighting is None or not weight:
+            scorer = acquisition.scorer(context)
+        else:
+            scorer = weighting.scorer(acquisition, context, self._prior, weight)
+        return scorer if feasibility is None else FeasibilityWeighted(inner=scorer, feasibility=feasibility)
+
+    def _searching(self, feasibility: FeasibilityPosterior) -> Scorer:
+        """Return the search for the first feasible points, with the prior where it counts."""
+        scorer = FeasibilitySearch(feasibility=feasibility)
+        weighting, weight = self._method.prior_weighting, self._prior_weight()
+        return scorer if weighting is None or not weight else weighting.weigh(scorer, self._prior, weight)
+
+    def _by_score(self, scorer: Scorer, incumbents: FloatArray, trial: int, rng: Rng) -> Suggestion | None:
+        """Return the new point of the best score, near the incumbents or anywhere else."""
         space = self.history.space
-        context = self._context(rng)
-        weight = self._prior_weight()
         best = self._method.maximizer.maximize(
             MaximizationProblem(
-                scorer=self._scorer(context, weight),
+                scorer=scorer,
                 space=space,
                 prior=self._prior,
-                incumbents=self._incumbents(context),
+                incumbents=incumbents,
                 seen=self.taken_keys(),
                 rng=rng,
             )
@@ -149,22 +186,18 @@ class BayesianOptimizer(Optimizer):
             trial=trial,
             configuration=configuration,
             phase=MODEL,
-            prior_weight=weight,
+            prior_weight=self._prior_weight(),
             acquisition_value=best.score,
         )
 
-    def _scorer(self, context: AcquisitionContext, weight: float | None) -> Scorer:
-        """Return what is maximized: the acquisition function, with the prior where it has a part."""
-        weighting, acquisition = self._method.prior_weighting, self._method.acquisition
-        if weighting is None or not weight:
-            return acquisition.scorer(context)
-        return weighting.scorer(acquisition, context, self._prior, weight)
-
-    def _context(self, rng: Rng) -> AcquisitionContext:
+    def _context(self, rng: Rng, feasibility: FeasibilityPosterior | None) -> AcquisitionContext:
         X, Y = self.history.X(), self.history.Y()
         normalization = Normalization.of_front(Y, reference_point_of(self.history.objectives))
+        posterior = self._posterior(X, Y)
+        if feasibility is not None:
+            normalization = normalization.reaching(self._ideal(posterior, feasibility, rng))
         return AcquisitionContext(
-            posterior=self._posterior(X, Y),
+            posterior=posterior,
             X=X,
             Y=Y,
             X_pending=self.history.space.encode([s.configuration for s in self.in_flight]),
@@ -180,12 +213,33 @@ class BayesianOptimizer(Optimizer):
         earlier = [*(e.suggestion for e in self.history), *self.in_flight]
         return sum(suggestion.phase == MODEL for suggestion in earlier)
 
+    def _ideal(self, posterior: Posterior, feasibility: FeasibilityPosterior, rng: Rng) -> FloatArray:
+        """Return what each objective may come down to where points are probably feasible, shape (m,)."""
+        space = self.history.space
+        return optimistic_ideal(posterior, feasibility, space.snap(sobol_points(IDEAL_POINTS, space.dimension, rng)))
+
     def _prior_weight(self) -> float | None:
         """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
         if self._method.prior_weighting is None or self._prior.is_uniform:
             return None
         n = 1 + self._n_model_based()
         return self._method.prior_weighting.weight(n, max(self._budget - len(self._initial), 1))
+
+    def _feasibility(self, *, is_searching: bool) -> FeasibilityPosterior | None:
+        """Return what is known of the feasibility; None if no evaluation has been infeasible.
+
+        While there is nothing but this to go by, pending points count as infeasible, so that a batch spreads.
+        """
+        X, is_feasible = self.history.feasibility()
+        if self._method.feasibility_weighting is None or is_feasible.all():
+            return None
+        if self._feasibility_of is None or self._feasibility_of[0] != len(X) or is_searching:
+            pending = self.history.space.encode([s.configuration for s in self.in_flight if is_searching])
+            known = np.append(is_feasible, np.zeros(len(pending), dtype=bool))
+            is_ordered = self.history.space.is_ordered
+            posterior = self._method.feasibility_weighting.fit(np.vstack([X, pending]), known, is_ordered)
+            self._feasibility_of = (len(X), posterior)
+        return self._feasibility_of[1]
 
     def _incumbents(self, context: AcquisitionContext) -> FloatArray:
         """Return the observed points of best predicted scalarization, shape (k, d), best first."""

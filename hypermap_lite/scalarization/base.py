@@ -59,6 +59,15 @@ class Normalization:
         scale = np.where(scale > SMALLEST_EXTENT * overall, scale, overall)
         return cls(offset=offset, scale=np.where(scale > 0, scale, 1.0))
 
+    def reaching(self, ideal: FloatArray) -> Normalization:
+        """Return the normalization whose zero is the ideal, shape (m,), where that is better; the worst stays one.
+
+        A Tchebyshev scalarization sees no gain beyond its zero. Where a boundary has to be followed to get to the
+        ends of the front, its zero must be what can be reached, not what has been.
+        """
+        offset = np.minimum(self.offset, ideal)
+        return Normalization(offset=offset, scale=self.scale + (self.offset - offset))
+
     def __call__(self, Y: FloatArray) -> FloatArray:
         """Return normalized objectives, shape (..., m)."""
         return (Y - self.offset) / self.scale

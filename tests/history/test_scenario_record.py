@@ -153,3 +153,11 @@ def test_the_file_of_a_prior_may_differ_but_not_its_points(tmp_path):
     assert "499, 0.5] ... there" in line
     assert "499, 0.7] ... now" in line
     assert len(line) < 160
+
+
+def test_an_old_run_of_a_version_without_feasibility_goes_on_with_the_default():
+    old = {"acquisition": {"type": "thompson_sampling"}}
+    new = {"acquisition": {"type": "thompson_sampling", "feasibility_weighting": {"method": "probability"}}}
+    assert list(differing(old, new)) == []
+    new["acquisition"]["feasibility_weighting"]["method"] = "none"
+    assert [place for place, _, _ in differing(old, new)] == ["$.acquisition.feasibility_weighting.method"]

@@ -1,0 +1,141 @@
+"""Any acquisition function, weighted by how likely a point is feasible."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
+from hypermap_lite.acquisition.improvement import SMOOTHING, log_softplus
+from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.surrogates.feasibility import FeasibilityModel, FeasibilityPosterior, ProbitProcess
+from hypermap_lite.typing import BoolArray, FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeasibilityWeighting:
+    """The utility of a point counts with the probability that the point is feasible [1]_.
+
+    It says nothing as long as all evaluations have been feasible.
+
+    References
+    ----------
+    .. [1] Gardner et al. Bayesian Optimization with Inequality Constraints. ICML 2014, eq. 5.
+    """
+
+    def fit(self, X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray) -> FeasibilityPosterior:
+        """Learn from n evaluations, shapes (n, d) and (n,), where points are feasible."""
+        model: FeasibilityModel = ProbitProcess()
+        return model.fit(X, is_feasible, is_ordered=is_ordered)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeasibilityWeighted:
+    """A scorer in log form plus the log probability that a point is feasible."""
+
+    inner: Scorer
+    feasibility: FeasibilityPosterior
+
+    @property
+    def is_differentiable(self) -> bool:
+        """Whether both parts are."""
+        return self.inner.is_differentiable and self.feasibility.is_differentiable
+
+    def __call__(self, X: FloatArray) -> FloatArray:
+        """Return the scores of n points, shape (n,)."""
+        return self.inner(X) + self.feasibility.log_probability(X)
+
+    def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the scores, shape (n,), and their gradients, shape (n, d)."""
+        score, gradient = self.inner.with_gradient(X)
+        log_probability, slope = self.feasibility.log_probability_with_gradient(X)
+        return score + log_probability, gradient + slope
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LogImprovement:
+    """Log of how far a score exceeds that of the best known point, smoothed to stay positive below.
+
+    A product with a probability makes sense for a positive utility only: times P, the negative score of a bound that
+    is worse than the incumbent would grow with the risk of being infeasible. So the bound, or the drawn function,
+    counts by its improvement over its own value at the best feasible point, softplus(t) instead of max(0, t).
+    """
+
+    inner: Scorer
+    incumbent: float
+    """The inner score to exceed, in normalized objectives."""
+
+    @classmethod
+    def over(cls, inner: Scorer, X: FloatArray) -> LogImprovement:
+        """Make it for a scorer and the points known to be feasible, shape (n, d)."""
+        return cls(inner=inner, incumbent=float(inner(X).max()))
+
+    @property
+    def is_differentiable(self) -> bool:
+        """Whether the inner scorer is."""
+        return self.inner.is_differentiable
+
+    def __call__(self, X: FloatArray) -> FloatArray:
+        """Return the scores of n points, shape (n,)."""
+        return log_softplus((self.inner(X) - self.incumbent) / SMOOTHING) + math.log(SMOOTHING)
+
+    def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the scores, shape (n,), and their gradients, shape (n, d)."""
+        score, gradient = self.inner.with_gradient(X)
+        t = (score - self.incumbent) / SMOOTHING
+        log_value = log_softplus(t)
+        slope = np.exp(-np.logaddexp(0.0, -t) - log_value) / SMOOTHING  # sigmoid / softplus
+        return log_value + math.log(SMOOTHING), slope[:, None] * gradient
+
+
+@dataclass(frozen=True, slots=True)
+class Improving:
+    """An acquisition function that counts by its `LogImprovement` over the best point known to be feasible."""
+
+    inner: Acquisition
+    is_logarithmic: ClassVar[bool] = True
+
+    def scorer(self, context: AcquisitionContext) -> LogImprovement:
+        """Become the scorer of one suggestion."""
+        return LogImprovement.over(self.inner.scorer(context), context.X)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeasibilitySearch:
+    """Where to look for the first feasible points: probably feasible, and not known to be.
+
+    The log of the probability times the latent standard deviation. While every point so far is infeasible, both lead
+    away from all of them; a single feasible one draws the search to its surroundings, not onto itself.
+    """
+
+    feasibility: FeasibilityPosterior
+
+    @property
+    def is_differentiable(self) -> bool:
+        """Whether the model is."""
+        return self.feasibility.is_differentiable
+
+    def __call__(self, X: FloatArray) -> FloatArray:
+        """Return the scores of n points, shape (n,)."""
+        return self.feasibility.log_probability(X) + self.feasibility.log_spread(X)
+
+    def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the scores, shape (n,), and their gradients, shape (n, d)."""
+        log_probability, slope = self.feasibility.log_probability_with_gradient(X)
+        log_spread, spread_slope = self.feasibility.log_spread_with_gradient(X)
+        return log_probability + log_spread, slope + spread_slope
+
+
+def optimistic_ideal(posterior: Posterior, feasibility: FeasibilityPosterior, X: FloatArray) -> FloatArray:
+    """Return the least mean minus std of each objective among the points that are probably feasible, shape (m,).
+
+    Infinite if none of the n points, shape (n, d), is.
+    """
+    probable = X[feasibility.log_probability(X) > math.log(0.5)]
+    if not len(probable):
+        return np.array(np.inf)
+    prediction = posterior.predict(probable)
+    return np.asarray((prediction.mean - prediction.std).min(axis=0))
