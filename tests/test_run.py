@@ -10,7 +10,7 @@ import pytest
 
 import hypermap_lite
 from hypermap_lite import optimize
-from hypermap_lite.errors import RunFolderError, ScenarioError, UsageError
+from hypermap_lite.errors import RepeatedFailureError, RunFolderError, ScenarioError, UsageError
 from hypermap_lite.evaluation.runner import StopReason
 from hypermap_lite.history.lock import FolderLock
 from hypermap_lite.run import name_of
@@ -199,3 +199,41 @@ def test_a_range_as_prior_without_floor_keeps_all_trials_in_it(tmp_path):
     scenario = SCENARIO | {"input_parameters": parameters, "optimizer": "bayesian", "acquisition": acquisition}
     result = optimize(scenario, two, output_directory=tmp_path)
     assert all(0.5 <= e.configuration["x"] <= 1 and 3 <= e.configuration["n"] <= 5 for e in result.evaluations)
+
+
+def half_is_valid(configuration):
+    x = configuration["x"]
+    return {"f": x**2 if x < 1 else float("inf"), "g": x, "Valid": x < 0.3}
+
+
+def test_a_run_with_infeasible_evaluations_writes_them_leaves_them_out_and_goes_on_as_if_it_had_not_stopped(tmp_path):
+    scenario = SCENARIO | {
+        "feasible_output": {"true_value": "yes", "false_value": "no"},
+        "optimizer": "bayesian",
+        "maximizer": {"type": "local_search", "candidates": 32, "starts": 1},
+        "acquisition": {"samples": 8},
+        "budget": {"evaluations": 9, "batch_size": 2},
+        "design_of_experiment": {"type": "random_sampling", "number_of_samples": 5},
+    }
+    result = optimize(scenario, half_is_valid, output_directory=tmp_path / "whole")
+    frame = result.to_frame()
+    assert frame.columns[:5].tolist() == ["x", "f", "g", "Valid", "Timestamp"]
+    assert frame["Valid"].tolist() == ["yes" if x < 0.3 else "no" for x in frame["x"]]
+    assert set(frame["Valid"]) == {"yes", "no"}
+    assert frame["g"].tolist() == frame["x"].tolist()
+    assert frame["f"].isna().tolist() == [x >= 1 for x in frame["x"]]
+    assert max(configuration["x"] for configuration, _ in result.pareto_front) < 0.3
+    for n in (6, 8):
+        shorter = scenario | {"budget": {"evaluations": n, "batch_size": 2}}
+        optimize(shorter, half_is_valid, output_directory=tmp_path / str(n))
+        resumed = optimize(scenario, half_is_valid, output_directory=tmp_path / str(n))
+        rows = [(e.configuration, e.state, e.values, e.suggestion.acquisition_value) for e in resumed.evaluations]
+        assert rows == [
+            (e.configuration, e.state, e.values, e.suggestion.acquisition_value) for e in result.evaluations
+        ]
+
+
+def test_an_answer_without_the_feasible_output_is_a_failure_with_its_reason(tmp_path):
+    scenario = SCENARIO | {"feasible_output": {}}
+    with pytest.raises(RepeatedFailureError, match="the result has no 'Valid'"):
+        optimize(scenario, two, output_directory=tmp_path)

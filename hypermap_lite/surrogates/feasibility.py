@@ -8,7 +8,7 @@ from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import log_ndtr
+from scipy.special import log_ndtr, ndtr
 
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.laplace import Laplace
@@ -47,12 +47,12 @@ class FeasibilityPosterior(Protocol):
         """Return the log probabilities, shape (n,), and their gradients, shape (n, d)."""
         ...
 
-    def log_spread(self, X: FloatArray) -> FloatArray:
-        """Return the log of how uncertain the feasibility of n points is, relative to no evaluation, shape (n,)."""
+    def log_novelty(self, X: FloatArray) -> FloatArray:
+        """Return the log of how much an evaluation of each of n points would tell, up to a constant, shape (n,)."""
         ...
 
-    def log_spread_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the log uncertainties, shape (n,), and their gradients, shape (n, d)."""
+    def log_novelty_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log novelties, shape (n,), and their gradients, shape (n, d)."""
         ...
 
 
@@ -184,22 +184,38 @@ class ProbitPosterior:
         by_z = np.exp(-0.5 * z * z - LOG_SQRT_2PI - value)
         return value, self._pull(latent, X, by_z / width, -0.5 * by_z * z / width**2)
 
-    def log_spread(self, X: FloatArray) -> FloatArray:
-        """Return the log of the latent standard deviation relative to that before any evaluation, shape (n,)."""
-        return 0.5 * np.log(self._latent(X).variance / (self.variance + self.constant_variance))
+    def log_novelty(self, X: FloatArray) -> FloatArray:
+        """Return the log of the latent standard deviation times the share of a point's surroundings in the cube, (n,).
 
-    def log_spread_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the log spreads, shape (n,), and their gradients, shape (n, d)."""
-        latent = self._latent(X)
-        value = 0.5 * np.log(latent.variance / (self.variance + self.constant_variance))
-        return value, self._pull(latent, X, np.zeros(len(X)), 0.5 / latent.variance)
+        Both are relative to their largest values. The uncertainty alone is largest in the corners, where an
+        evaluation says something of a small part of the cube only.
+        """
+        return 0.5 * np.log(self._latent(X).variance / self._total) + self._log_share(X)[0]
+
+    def log_novelty_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log novelties, shape (n,), and their gradients, shape (n, d)."""
+        latent, (log_share, slope) = self._latent(X), self._log_share(X)
+        value = 0.5 * np.log(latent.variance / self._total) + log_share
+        return value, self._pull(latent, X, np.zeros(len(X)), 0.5 / latent.variance) + slope
+
+    @property
+    def _total(self) -> float:
+        """Variance of the latent function before any evaluation."""
+        return self.variance + self.constant_variance
+
+    def _log_share(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log mass within the cube of normal densities around n points, (n,), and its gradient, (n, d)."""
+        is_ordered, scale = self.kernel.is_ordered, self.kernel.lengthscales
+        above, below = (1.0 - X) / scale, X / scale
+        share = ndtr(above) - ndtr(-below)
+        slope = (np.exp(-0.5 * below**2) - np.exp(-0.5 * above**2)) / (math.sqrt(2 * math.pi) * scale * share)
+        return np.log(share[:, is_ordered]).sum(axis=1), np.where(is_ordered, slope, 0.0)
 
     def _latent(self, X: FloatArray) -> Latent:
         C, H = self.kernel.parts(X, self.X)
         k = self.variance * C + self.constant_variance  # (n, b)
         v = solve_lower(self.laplace.L, (k * self.laplace.root).T)  # (b, n)
-        total = self.variance + self.constant_variance
-        variance = np.maximum(total - np.einsum("bn,bn->n", v, v), VARIANCE_FLOOR)
+        variance = np.maximum(self._total - np.einsum("bn,bn->n", v, v), VARIANCE_FLOOR)
         return Latent(k @ self.laplace.slope, variance, v, H)
 
     def _pull(self, latent: Latent, X: FloatArray, by_mean: FloatArray, by_variance: FloatArray) -> FloatArray:

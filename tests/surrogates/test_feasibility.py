@@ -20,7 +20,7 @@ def fitted(n=40, seed=0):
     return ProbitProcess().fit(X, in_the_band(X), is_ordered=ORDERED)
 
 
-@pytest.mark.parametrize("name", ["log_probability", "log_spread"])
+@pytest.mark.parametrize("name", ["log_probability", "log_novelty"])
 def test_gradients_are_those_of_finite_differences_and_zero_along_categories(name) -> None:
     rng = np.random.default_rng(1)
     X = rng.random((30, 3))
@@ -56,8 +56,9 @@ def test_infeasible_points_alone_lower_the_probability_around_them_most(n) -> No
     posterior = ProbitProcess().fit(X, np.zeros(n, dtype=bool), is_ordered=ORDERED)
     near, far = np.exp(posterior.log_probability(np.array([[0.3, 0.3], [1.0, 1.0]])))
     assert 0 < near < far < 0.5
-    spread = posterior.log_spread(np.array([[0.3, 0.3], [1.0, 1.0]]))
-    assert spread[0] < spread[1] <= 0
+    known, inside, corner = posterior.log_novelty(np.array([[0.3, 0.3], [0.75, 0.75], [1.0, 1.0]]))
+    assert known < inside < 0
+    assert corner < inside
 
 
 def test_feasible_points_alone_raise_it() -> None:
