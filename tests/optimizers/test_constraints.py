@@ -31,8 +31,15 @@ def objectives(configuration: dict) -> dict[str, float]:
     return {"near": sum(numbers), "far": numbers[0] - numbers[-1] ** 2}
 
 
-@every_optimizer
-@pytest.mark.parametrize("name", ["ring", "tiny", "mixed", "mixed equality", "sum"])
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        (kind, name)
+        for kind in OPTIMIZERS
+        for name in ("ring", "tiny", "mixed", "mixed equality", "sum")
+        if kind != "cma_es" or not name.startswith("mixed")  # it knows numbers only
+    ],
+)
 def test_every_suggestion_meets_the_constraints_and_a_resumed_run_goes_on(kind: str, name: str) -> None:
     scenario, space = constrained(name, optimizer=kind), space_of(name)
     whole = run(scenario, 9, batch=2, function=objectives)
