@@ -8,6 +8,7 @@
     ├── RunFolderError (RuntimeError)       the run folder is locked, foreign or damaged   exit 2
     ├── NoValidEvaluationError (RuntimeError)  a run ended without one usable evaluation   exit 3
     ├── RepeatedFailureError (RuntimeError) the evaluator keeps failing                    exit 4
+    ├── ClientError (RuntimeError)          the client answers wrongly, too late or not    exit 5
     └── EvaluationError (RuntimeError)      one evaluation failed; recorded, never fatal
 
 The library raises, `hypermap_lite.cli` alone prints and exits.
@@ -96,6 +97,12 @@ class RepeatedFailureError(HypermapLiteError, RuntimeError):
     """The evaluator failed so often in a row that going on would waste the budget."""
 
     exit_code = 4
+
+
+class ClientError(HypermapLiteError, RuntimeError):
+    """The client at the other end of stdin and stdout broke the protocol, was too late, or is gone."""
+
+    exit_code = 5
 
 
 class EvaluationError(HypermapLiteError, RuntimeError):

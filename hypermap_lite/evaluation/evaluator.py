@@ -175,13 +175,13 @@ def _missing(name: str, entries: Mapping[str, object]) -> str:
 def _by_name(result: object, objectives: Sequence[str], more: Sequence[str]) -> Mapping[str, object] | str:
     """Return the entries of a result by name, or what is wrong with it."""
     names = [*objectives, *more]
-    named = _as_mapping(result)
+    named = as_mapping(result)
     if named is not None:
         return named
     if len(names) == 1 and as_number(result) is not None:
         return {names[0]: result}
     expected = f"expected a mapping with {', '.join(map(repr, names))}"
-    if not _has_an_order(result):
+    if not has_an_order(result):
         return f"the result is {shorten(result)}; {expected}"
     items = list(result)
     if len(items) != len(names):
@@ -190,7 +190,7 @@ def _by_name(result: object, objectives: Sequence[str], more: Sequence[str]) -> 
     return dict(zip(names, items, strict=True))
 
 
-def _as_mapping(result: Any) -> Mapping[str, object] | None:
+def as_mapping(result: Any) -> Mapping[str, object] | None:
     """Return a result that has names (mapping, pandas Series, named tuple) as a mapping; None for any other."""
     if isinstance(result, Mapping):
         return result
@@ -201,7 +201,7 @@ def _as_mapping(result: Any) -> Mapping[str, object] | None:
     return None
 
 
-def _has_an_order(result: object) -> TypeGuard[Iterable[object]]:
+def has_an_order(result: object) -> TypeGuard[Iterable[object]]:
     """Tell whether a result is a sequence or an array of numbers, not text, and not a set."""
     if isinstance(result, Sequence):
         return not isinstance(result, str | bytes | bytearray | memoryview)

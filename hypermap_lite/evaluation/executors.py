@@ -6,7 +6,7 @@ import time
 from collections.abc import Generator, Iterable, Iterator
 from multiprocessing.connection import wait
 from types import TracebackType
-from typing import Final, Protocol, Self
+from typing import ClassVar, Final, Protocol, Self
 
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.command import describe_status
@@ -31,6 +31,9 @@ BURIAL_SECONDS: Final = 1.0
 class Executor(Protocol):
     """Makes calls, in any order, and hands back each as it finishes."""
 
+    is_one_call: ClassVar[bool]
+    """Whether all requests of a `run` are one call: then a result that is not taken would be lost."""
+
     def run(self, evaluator: Evaluator, requests: Iterable[EvaluationRequest]) -> Generator[Replicate, None, None]:
         """Yield the record of each call.
 
@@ -44,6 +47,8 @@ class Executor(Protocol):
 
 class InProcessExecutor:
     """Makes one call after the other in this process, without a time limit."""
+
+    is_one_call: ClassVar[bool] = False
 
     def run(self, evaluator: Evaluator, requests: Iterable[EvaluationRequest]) -> Generator[Replicate, None, None]:
         """Yield the record of each call."""
@@ -67,6 +72,8 @@ class ProcessExecutor:
     timeout_seconds
         Time limit of one call [s], importing the black box not counted; None for none.
     """
+
+    is_one_call: ClassVar[bool] = False
 
     def __init__(self, n_workers: int, timeout_seconds: float | None = None) -> None:
         self.timeout_seconds = timeout_seconds

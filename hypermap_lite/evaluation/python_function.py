@@ -12,8 +12,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hypermap_lite.errors import ScenarioError, nearest
+from hypermap_lite.evaluation.batch_results import outcomes_of
+from hypermap_lite.evaluation.batches import BatchOutcome, BatchRequest
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, last_line, outcome_of
-from hypermap_lite.evaluation.outcome import Outcome
+from hypermap_lite.evaluation.outcome import Outcome, State
 from hypermap_lite.objectives import FeasibleOutput
 
 PATH = "$.function"
@@ -28,6 +30,10 @@ class PythonFunction:
     It returns a mapping with every objective (other numbers become columns of ``evaluations.csv``), a sequence with
     the objectives in their order, or, for one objective, a number. ``{"feasible": False}`` marks a configuration
     that is not allowed; a scenario may name another entry for that.
+
+    With `batch`, it is called once for all configurations of a batch: with a list of values per parameter, and with
+    lists for ``seed``, ``replicate`` and ``trial``. It returns a list with an item per configuration, each of the forms
+    above, or a mapping of lists (also arrays, or a pandas data frame).
 
     The module is imported in the main process, to find mistakes before the first evaluation, and again in every
     worker: it must not connect to hardware, or anything else that exists once, while it is imported. What it prints
@@ -48,6 +54,9 @@ class PythonFunction:
     feasible_output: FeasibleOutput | None = None
     """What says whether a configuration is allowed; None for an entry ``feasible`` that may be left out."""
 
+    batch: bool = False
+    """Whether it takes all configurations of a batch in one call."""
+
     search_path: Sequence[str] = ()
     """Folders to import from, before all others."""
 
@@ -61,24 +70,43 @@ class PythonFunction:
 
     def __reduce__(self) -> tuple[Callable[..., PythonFunction], tuple[Any, ...]]:
         """Pickle the name rather than what it leads to, so that a worker imports it itself."""
-        return _rebuild, (self.function, tuple(self.objectives), self.feasible_output, tuple(self.search_path))
+        options = self.feasible_output, self.batch
+        return _rebuild, (self.function, tuple(self.objectives), *options, tuple(self.search_path))
 
     def __call__(self, request: EvaluationRequest) -> Outcome:
         """Call the function once."""
+        if self.batch:
+            return self._call_with_batch(request)
         facts = {"seed": request.seed, "replicate": request.replicate, "trial": request.trial}
         extras = {name: facts[name] for name in self._extras}
         result = self._callable(dict(request.configuration), **extras)
         return outcome_of(result, self.objectives, self.feasible_output)
+
+    def _call_with_batch(self, request: EvaluationRequest) -> Outcome:
+        """Call the function for all requests in one; a single request is a batch of one."""
+        requests = request.requests if isinstance(request, BatchRequest) else (request,)
+        columns = {name: [r.configuration[name] for r in requests] for name in request.configuration}
+        extras = {name: [getattr(r, name) for r in requests] for name in self._extras}
+        result = self._callable(columns, **extras)
+        outcomes = outcomes_of(result, self.objectives, len(requests), self.feasible_output)
+        if not isinstance(request, BatchRequest):
+            return outcomes[0]
+        return BatchOutcome(state=State.COMPLETED, outcomes=outcomes)
 
 
 def _rebuild(
     function: str | Callable[..., object],
     objectives: Sequence[str],
     feasible_output: FeasibleOutput | None,
+    batch: bool,
     search_path: Sequence[str],
 ) -> PythonFunction:
     return PythonFunction(
-        function=function, objectives=objectives, feasible_output=feasible_output, search_path=search_path
+        function=function,
+        objectives=objectives,
+        feasible_output=feasible_output,
+        batch=batch,
+        search_path=search_path,
     )
 
 

@@ -1,8 +1,8 @@
 """The loop: ask for a batch, evaluate it, write it down, tell the optimizer.
 
-Batch b holds the trials from b k to (b + 1) k - 1, k being the batch size, and the optimizer sees the results of a
-batch only when all of it is done. So a run that goes on after a stop asks the same questions as one that never
-stopped, and the number of workers does not matter.
+A `BatchPlan` cuts the trials into batches, and the optimizer sees the results of a batch only when all of it is done.
+So a run that goes on after a stop asks the same questions as one that never stopped, and the number of workers does not
+matter.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
-from hypermap_lite.errors import NoValidEvaluationError, RepeatedFailureError
+from hypermap_lite.errors import ClientError, NoValidEvaluationError, RepeatedFailureError
 from hypermap_lite.evaluation.aggregation import summarize
+from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import FrontTracker, RunObserver, describe
@@ -65,16 +66,23 @@ class Runner:
 
     budget: BudgetSpec
     seed: int
+    plan: BatchPlan | None = None
+    """None: batches of the budget's size."""
+
     replicates: int = 1
     max_consecutive_failures: int = 5
     observer: RunObserver = field(default_factory=RunObserver)
     should_stop: Callable[[], bool] = lambda: False
     """Asked before every call; once true, running calls are waited for and no other is begun."""
 
+    _plan: BatchPlan = field(init=False)
     _clock: Clock = field(init=False)
     _front: FrontTracker = field(init=False)
     _failures: int = field(init=False, default=0)
     """Configurations without a usable result in a row, up to now."""
+
+    def __post_init__(self) -> None:
+        self._plan = self.plan or BatchPlan(size=self.budget.batch_size)
 
     def run(self) -> StopReason:
         """Evaluate until the budget, the time or the search space is used up, or a stop is asked for.
@@ -83,6 +91,8 @@ class Runner:
         ------
         RepeatedFailureError
             If `max_consecutive_failures` configurations in a row failed or ran past the time limit.
+        ClientError
+            If the client that evaluates breaks the protocol or is gone.
         NoValidEvaluationError
             If the run ends and no configuration at all gave a usable result.
         RunFolderError
@@ -91,7 +101,8 @@ class Runner:
         self._restore()
         try:
             reason = self._loop()
-        except RepeatedFailureError:
+        except (RepeatedFailureError, ClientError) as error:
+            logger.error("the run is stopped: %s", str(error).partition("\n")[0])
             self._tidy_up()
             raise
         self._tidy_up()
@@ -107,8 +118,8 @@ class Runner:
     def _restore(self) -> None:
         """Tell the optimizer the batches that are complete on disk."""
         rows = self.folder.evaluations
-        size = self.budget.batch_size
-        n_complete = len(rows) if len(rows) >= self.budget.evaluations else len(rows) // size * size
+        is_finished = len(rows) >= self.budget.evaluations
+        n_complete = len(rows) if is_finished else self._plan.n_in_whole_batches(len(rows))
         self.optimizer.history.extend(rows[:n_complete])
         self._clock = Clock(max((row.timestamp for row in rows), default=0))
         self._front = FrontTracker(self.folder.objectives)
@@ -123,7 +134,8 @@ class Runner:
 
     def _loop(self) -> StopReason:
         while (reason := self._reason_to_stop()) is None:
-            n = min(self.budget.batch_size, self.budget.evaluations - len(self.optimizer.history))
+            done = len(self.optimizer.history)
+            n = min(self._plan.end_of_batch(done), self.budget.evaluations) - done
             suggestions = [self._as_recorded(s) for s in self.optimizer.ask(n)]
             if not suggestions:
                 return StopReason.EXHAUSTED
@@ -169,6 +181,7 @@ class Runner:
                 self.folder.append_replicate(call)
                 self.observer.on_replicate(call)
                 self._record_finished(suggestions)
+        self._check_failures()
         rows = self.folder.evaluations[suggestions[0].trial : suggestions[-1].trial + 1]
         self.folder.write_pareto()
         if len(rows) == len(suggestions):
@@ -204,8 +217,12 @@ class Runner:
         logger.info("%s", describe(evaluation, front))
         self.observer.on_evaluation(evaluation, front)
         self._failures = self._failures + 1 if _is_failure(evaluation) else 0
+        if not self.executor.is_one_call:
+            self._check_failures()
+
+    def _check_failures(self) -> None:
         if self._failures >= self.max_consecutive_failures:
-            logger.error("the last %d evaluations failed; the run is stopped", self._failures)
+            evaluation = self.folder.evaluations[-1]
             raise RepeatedFailureError(
                 f"the last {self._failures} configurations gave no usable result: {evaluation.error}\n"
                 f"  logs: {self.folder.trial_folder(evaluation.trial)}\n"

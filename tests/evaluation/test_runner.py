@@ -2,17 +2,21 @@
 
 import csv
 import logging
+import math
 from contextlib import closing
 from dataclasses import replace
 
 import pytest
 
-from hypermap_lite.errors import NoValidEvaluationError, RepeatedFailureError
+from hypermap_lite.errors import ClientError, NoValidEvaluationError, RepeatedFailureError
 from hypermap_lite.evaluation import runner as runner_module
-from hypermap_lite.evaluation.evaluator import EvaluationRequest
+from hypermap_lite.evaluation.batch_plan import BatchPlan
+from hypermap_lite.evaluation.batches import BatchExecutor
+from hypermap_lite.evaluation.evaluator import EvaluationRequest, call
 from hypermap_lite.evaluation.executors import InProcessExecutor, ProcessExecutor
 from hypermap_lite.evaluation.observer import RunObserver
 from hypermap_lite.evaluation.outcome import Outcome, State
+from hypermap_lite.evaluation.python_function import PythonFunction
 from hypermap_lite.evaluation.runner import Clock, Runner, StopReason
 from hypermap_lite.evaluation.seeds import replicate_seed
 from hypermap_lite.scenario.model import BudgetSpec
@@ -102,6 +106,53 @@ def test_run_killed_again_and_again_ends_like_one_that_was_not(tmp_path):
             run(tmp_path / "killed", KilledAt(1), batch=3, replicates=2)
     run(tmp_path / "killed", batch=3, replicates=2)
     assert everything(tmp_path / "killed") == everything(tmp_path / "whole")
+
+
+@pytest.mark.parametrize("first", [1, 4])
+def test_first_batch_of_another_size_stands_kills_too(tmp_path, first):
+    options = {"n": 7, "batch": 2, "plan": BatchPlan(size=2, first=first)}
+    run(tmp_path / "whole", **options)
+    for n in range(7):
+        path = tmp_path / str(n)
+        with pytest.raises(Killed):
+            run(path, KilledAt(n), **options)
+        run(path, KilledAt(7 - n), **options)
+        assert everything(path) == everything(tmp_path / "whole")
+
+
+def test_batch_that_is_one_call_is_written_whole_before_the_run_is_stopped_for_failures(tmp_path):
+    def fail_but_for_the_last(columns, trial):
+        return {"f": [math.nan, math.nan, math.nan, 1.0], "g": [0.0] * 4}
+
+    evaluator = PythonFunction(function=fail_but_for_the_last, objectives=("f", "g"), batch=True)
+    executor = BatchExecutor(InProcessExecutor())
+    run(tmp_path / "ends well", evaluator, executor=executor, n=4, batch=4, max_consecutive_failures=2)
+    assert [row["state"] for row in rows(tmp_path / "ends well", "history.csv")] == ["failed"] * 3 + ["completed"]
+    evaluator = PythonFunction(function=lambda columns: [None] * 4, objectives=("f", "g"), batch=True)
+    with pytest.raises(RepeatedFailureError, match="the last 4 configurations"):
+        run(tmp_path / "ends badly", evaluator, executor=executor, n=8, batch=4, max_consecutive_failures=2)
+    assert len(rows(tmp_path / "ends badly", "history.csv")) == 4
+
+
+def test_broken_client_leaves_the_folder_in_order(tmp_path, caplog):
+    class Client:
+        is_one_call = True
+
+        def run(self, evaluator, requests):
+            yield call(evaluator, next(iter(requests)))
+            raise ClientError("the client is gone\n  hint: call it back")
+
+        def close(self):
+            pass
+
+    with pytest.raises(ClientError):
+        run(tmp_path, executor=Client(), n=4, batch=2)
+    assert len(rows(tmp_path, "evaluations.csv")) == len(rows(tmp_path, "history.csv")) == 1
+    assert (tmp_path / "pareto.csv").exists()
+    assert "the run is stopped: the client is gone" in (tmp_path / "run.log").read_text()
+    run(tmp_path, n=4, batch=2)
+    run(tmp_path / "whole", n=4, batch=2)
+    assert everything(tmp_path) == everything(tmp_path / "whole")
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3])
