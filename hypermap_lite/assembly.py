@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,7 +11,10 @@ from hypermap_lite.acquisition import ACQUISITIONS, Bopro, FeasibilityWeighting,
 from hypermap_lite.design import DESIGNS, Grid, InitialDesign, PriorSampling, RandomSampling
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.evaluation import EVALUATORS
+from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import Evaluator
+from hypermap_lite.evaluation.exhaustive import Exhaustive
+from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.python_function import PythonFunction
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers import MAXIMIZERS
@@ -211,10 +214,9 @@ def build_history(scenario: Scenario) -> History:
 def build_optimizer(scenario: Scenario, history: History | None = None) -> Optimizer:
     """Make the optimizer, which goes on from the given history."""
     history = build_history(scenario) if history is None else history
-    space = history.space
-    require_allowed(space)
-    prior = build_prior(scenario, space)
-    initial = InitialPhase(space, prior, build_design(scenario), scenario.design.number_of_samples, scenario.seed)
+    require_allowed(history.space)
+    prior = build_prior(scenario, history.space)
+    initial = build_initial(scenario, history.space, prior)
     if scenario.optimizer.type == "bayesian":
         return BayesianOptimizer(
             history,
@@ -249,6 +251,20 @@ def _build_search(
     n_reference = max(scenario.design.number_of_samples, search.n_initial)
     fitness = Fitness(scalarization=scalarization, weights=weights, n_reference=n_reference)
     return ModelFreeOptimizer(history, prior=prior, initial=initial, search=search, fitness=fitness, seed=scenario.seed)
+
+
+def build_initial(scenario: Scenario, space: SearchSpace, prior: ProductPrior) -> InitialPhase:
+    """Make the trials that come before everything else."""
+    return InitialPhase(space, prior, build_design(scenario), scenario.design.number_of_samples, scenario.seed)
+
+
+def build_plan(scenario: Scenario) -> BatchPlan:
+    """Cut the trials into batches; a client is asked for the whole design at once."""
+    size = scenario.budget.batch_size
+    if not scenario.evaluator.is_client:
+        return BatchPlan(size=size)
+    space = build_space(scenario)
+    return BatchPlan(size=size, first=len(build_initial(scenario, space, build_prior(scenario, space))))
 
 
 def build_design(scenario: Scenario) -> InitialDesign:
@@ -306,7 +322,12 @@ def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = No
     """
     names = tuple(objective.name for objective in scenario.objectives)
     if function is not None:
-        return PythonFunction(function=function, objectives=names, feasible_output=scenario.feasible_output)
+        return PythonFunction(
+            function=function,
+            objectives=names,
+            feasible_output=scenario.feasible_output,
+            batch=scenario.evaluator.batch,
+        )
     spec = scenario.evaluator.component
     if spec is None:
         raise ScenarioError(
@@ -320,15 +341,35 @@ def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = No
 
 
 def _surroundings(spec: ComponentSpec, scenario: Scenario) -> dict[str, Any]:
+    """Return what an evaluator needs of the rest of the scenario."""
     if spec.type == "command":
         names = tuple(p.name for p in scenario.parameters)
         return {"parameters": names, "working_directory": scenario.command_folder()}
-    folders = (*scenario.folders_of(f"{spec.path}.function"), Path.cwd())
-    return {"search_path": tuple(dict.fromkeys(map(str, folders)))}
+    if spec.type == "python":
+        folders = (*scenario.folders_of(f"{spec.path}.function"), Path.cwd())
+        return {"search_path": tuple(dict.fromkeys(map(str, folders)))}
+    needs = {"space": build_space(scenario), "feasible": _feasible_column(scenario)}
+    if spec.type == "exhaustive":
+        places = (*scenario.folders_of(f"{spec.path}.file"), Path.cwd())
+        return {**needs, "folders": tuple(dict.fromkeys(places))}
+    return needs
 
 
-def validate(scenario: Scenario) -> None:
-    """Build everything once, so that every mistake shows before the first evaluation.
+def _feasible_column(scenario: Scenario) -> FeasibleColumn | None:
+    spec = getattr(scenario, "feasible_output", None)
+    if spec is None:
+        return None
+    return FeasibleColumn(name=spec.name, true_value=spec.true_value, false_value=spec.false_value)
+
+
+def evaluator_warnings(scenario: Scenario, evaluator: Evaluator) -> Iterator[str]:
+    """Yield what is probably not meant about an evaluator that was made: a table that does not cover the space."""
+    if isinstance(evaluator, Exhaustive) and scenario.evaluator.component is not None:
+        yield from (f"{scenario.evaluator.component.path}.file: {text}" for text in evaluator.warnings())
+
+
+def validate(scenario: Scenario) -> list[str]:
+    """Build everything once, so that every mistake shows before the first evaluation; return warnings.
 
     Raises
     ------
@@ -336,5 +377,6 @@ def validate(scenario: Scenario) -> None:
         For the first mistake found.
     """
     build_optimizer(scenario)
-    if scenario.evaluator.component is not None:
-        build_evaluator(scenario)
+    if scenario.evaluator.component is None:
+        return []
+    return list(evaluator_warnings(scenario, build_evaluator(scenario)))

@@ -5,25 +5,29 @@ from __future__ import annotations
 import json
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hypermap_lite import assembly
-from hypermap_lite.errors import ScenarioError
-from hypermap_lite.evaluation.executors import Executor, InProcessExecutor, ProcessExecutor
+from hypermap_lite.errors import NoValidEvaluationError, ScenarioError
+from hypermap_lite.evaluation.channel import Channel, standard_channel
+from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
+from hypermap_lite.evaluation.executor_choice import choose_executor
+from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import RunObserver
 from hypermap_lite.evaluation.runner import Runner, StopReason
-from hypermap_lite.evaluation.worker_process import pickled
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.objectives import Objective, reference_point_of, values_of
 from hypermap_lite.pareto import hypervolume, infer_reference_point
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.lint import single_points
-from hypermap_lite.scenario.model import EvaluatorSpec, Scenario
+from hypermap_lite.scenario.model import Scenario
+from hypermap_lite.starting import set_run_folder_aside
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -77,6 +81,7 @@ def optimize(
     overrides: Sequence[str] = (),
     prior_from: str | Path | None = None,
     retry_failed: bool = False,
+    fresh: bool = False,
 ) -> Result:
     """Run a scenario, or go on with it where it stopped.
 
@@ -86,8 +91,9 @@ def optimize(
         A scenario file, or its content as a mapping.
     function
         Black box to use instead of the scenario's: called with the configuration, and with ``seed=``, ``replicate=``
-        and ``trial=`` if it takes them; returns the objectives. It is called in this process, unless there are
-        several workers or a time limit: then it must be importable from a module.
+        and ``trial=`` if it takes them; returns the objectives. With ``evaluator.batch`` it is called once per batch
+        with a list of values per parameter. It is called in this process, unless there are several workers or a time
+        limit: then it must be importable from a module.
     workers
         Calls at the same time, instead of the scenario's.
     output_directory
@@ -99,6 +105,8 @@ def optimize(
     retry_failed
         Whether the failures at the end of an earlier session are evaluated again, with the same seeds, instead of
         counting towards the budget.
+    fresh
+        Whether to start anew; the former run folder is renamed to ``<name>.bak-N``, never deleted.
 
     Returns
     -------
@@ -115,6 +123,8 @@ def optimize(
         If the folder is in use, holds another scenario's results, or cannot be written.
     RepeatedFailureError, NoValidEvaluationError
         If the black box keeps failing, or never gave a usable result.
+    ClientError
+        If the client of a ``client_server`` scenario, at the other end of stdin and stdout, breaks the protocol.
 
     Examples
     --------
@@ -127,7 +137,8 @@ def optimize(
     if output_directory is not None:
         changes.append(f"output.directory={json.dumps(str(output_directory))}")
     loaded = load_scenario(scenario, overrides=changes, prior_from=prior_from)
-    return run_scenario(loaded, function, retry_failed=retry_failed)
+    on_built = partial(set_run_folder_aside, loaded) if fresh else None
+    return run_scenario(loaded, function, retry_failed=retry_failed, on_built=on_built)
 
 
 def run_scenario(
@@ -136,8 +147,9 @@ def run_scenario(
     *,
     observer: RunObserver | None = None,
     should_stop: Callable[[], bool] = lambda: False,
-    on_built: Callable[[], None] = lambda: None,
+    on_built: Callable[[], object] | None = None,
     retry_failed: bool = False,
+    channel: Channel | None = None,
 ) -> Result:
     """Run a loaded scenario; see `optimize`.
 
@@ -149,6 +161,8 @@ def run_scenario(
         Asked before every call of the black box; once true, the run ends in order.
     on_built
         Called when all parts of the scenario have been made, before the run folder is opened.
+    channel
+        Connection to the client of a ``client_server`` scenario, instead of stdin and stdout.
     """
     evaluator, optimizer = _build(scenario, function)
     spec = scenario.evaluator
@@ -160,26 +174,50 @@ def run_scenario(
         function=None if function is None else name_of(function),
         feasible_output=scenario.feasible_output,
     )
-    executor = _executor(evaluator, spec, is_given=function is not None)
-    on_built()
-    with folder, closing(executor):  # workers end before the lock is released
-        if retry_failed:
-            folder.set_failures_aside()
-        for path, text in single_points(scenario):
-            logger.warning("%s: %s", path, text)
+    with ExitStack() as stack:
+        if isinstance(evaluator, ClientServer) and channel is None:
+            channel = stack.enter_context(standard_channel())
+        executor = choose_executor(evaluator, spec, channel, is_given=function is not None)
+        if on_built is not None:
+            on_built()
         runner = Runner(
             optimizer=optimizer,
             evaluator=evaluator,
             executor=executor,
             folder=folder,
             budget=scenario.budget,
+            plan=assembly.build_plan(scenario),
             seed=scenario.seed,
             replicates=spec.replicates,
             max_consecutive_failures=spec.max_consecutive_failures,
             should_stop=should_stop,
             observer=observer or RunObserver(),
         )
+        try:
+            result = _run_in_folder(runner, scenario, retry_failed=retry_failed)
+        except NoValidEvaluationError:
+            _say_goodbye(executor)
+            raise
+        if result.stop_reason is not StopReason.INTERRUPTED:
+            _say_goodbye(executor)
+    return result
+
+
+def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) -> Result:
+    with runner.folder as folder, closing(runner.executor):  # workers end before the lock is released
+        if retry_failed:
+            folder.set_failures_aside()
+        for path, text in single_points(scenario):
+            logger.warning("%s: %s", path, text)
+        for warning in assembly.evaluator_warnings(scenario, runner.evaluator):
+            logger.warning("%s", warning)
         return result_of(folder, runner.run())
+
+
+def _say_goodbye(executor: Executor) -> None:
+    """Tell a client that the run has ended, all files being written and free."""
+    if isinstance(executor, ClientExecutor):
+        executor.say_goodbye()
 
 
 def _build(scenario: Scenario, function: Callable[..., Any] | None) -> tuple[Evaluator, Optimizer]:
@@ -194,18 +232,6 @@ def name_of(function: Callable[..., Any]) -> str:
     """Return module and name of a function, or of the class of another callable object."""
     named = function if hasattr(function, "__qualname__") else type(function)
     return f"{named.__module__}.{named.__qualname__}"
-
-
-def _executor(evaluator: Evaluator, spec: EvaluatorSpec, *, is_given: bool) -> Executor:
-    """Choose where calls happen.
-
-    A scenario's own black box always has processes of its own: its crash is not ours, and it dies with us. A function
-    that was passed is called right here where that is possible.
-    """
-    if is_given and spec.workers == 1 and spec.timeout_seconds is None:
-        return InProcessExecutor()
-    pickled(evaluator)  # an error before the first evaluation, not at it
-    return ProcessExecutor(spec.workers, spec.timeout_seconds)
 
 
 def result_of(folder: RunFolder, reason: StopReason) -> Result:

@@ -60,7 +60,15 @@ AROUND = {
 }
 """Keys of a section that are not options of the member, besides its kind."""
 
-FROM_ELSEWHERE = {"objectives", "feasible_output", "search_path", "working_directory", "parameters"}
+FROM_ELSEWHERE = {
+    "objectives",
+    "feasible_output",
+    "search_path",
+    "working_directory",
+    "parameters",
+    "space",
+    "folders",
+}
 """Fields of evaluators that the rest of the scenario fills in."""
 
 MEMBERS = [

@@ -16,11 +16,18 @@ from types import ModuleType
 from typing import Final
 
 from hypermap_lite import __version__
-from hypermap_lite.cli import check, pareto, plot, run, study
+from hypermap_lite.cli import check, hypermapper_home, pareto, plot, run, study
 from hypermap_lite.cli.streams import WatchedStream, robust_streams
 from hypermap_lite.errors import HypermapLiteError, UsageError, nearest
 
-COMMANDS: Final[dict[str, ModuleType]] = {"run": run, "check": check, "pareto": pareto, "plot": plot, "study": study}
+COMMANDS: Final[dict[str, ModuleType]] = {
+    "run": run,
+    "check": check,
+    "pareto": pareto,
+    "plot": plot,
+    "study": study,
+    "hypermapper-home": hypermapper_home,
+}
 """Subcommands by name; each module has `add_parser` and `execute`."""
 
 PROGRAM: Final = "python -m hypermap_lite"
@@ -40,6 +47,7 @@ exit status:
   2    the scenario, the command line or the run folder is not right
   3    no evaluation gave a usable result
   4    the evaluator keeps failing
+  5    the client (evaluator client_server) answers wrongly, too late or not at all; what it answered is saved
   130  stopped by Ctrl-C; what was finished is saved
   143  stopped by SIGTERM; what was finished is saved
 """

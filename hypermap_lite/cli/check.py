@@ -42,10 +42,10 @@ def execute(args: Namespace) -> int:
 
     scenario = load(args, args.overrides)
     try:
-        validate(scenario)
+        warnings = validate(scenario)
     except ScenarioError as error:
         raise error.within(scenario.origin_of(error.path)) from error
     print(json.dumps(scenario.canonical, indent=2, ensure_ascii=False) if args.json else summarize(scenario))
-    for warning in lint(scenario, build_space(scenario)):
+    for warning in [*lint(scenario, build_space(scenario)), *warnings]:
         print(f"warning: {warning}", file=sys.stderr)
     return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import sys
-from argparse import Namespace, RawDescriptionHelpFormatter
+from argparse import SUPPRESS, Namespace, RawDescriptionHelpFormatter
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,11 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from hypermap_lite.cli.arguments import add_scenario, load
-from hypermap_lite.errors import HypermapLiteError
+from hypermap_lite.errors import ClientError, HypermapLiteError
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, _SubParsersAction
 
+    from hypermap_lite.evaluation.channel import Channel
     from hypermap_lite.run import Result
     from hypermap_lite.scenario.model import Scenario
 
@@ -48,6 +49,7 @@ def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> None:
     begin.add_argument(
         "--fresh", action="store_true", help="start anew; an existing run folder is renamed to DIR.bak-N, never deleted"
     )
+    begin.add_argument("--as-hypermapper", action="store_true", help=SUPPRESS)
     begin.add_argument(
         "--retry-failed",
         action="store_true",
@@ -65,25 +67,46 @@ def execute(args: Namespace) -> int:
     HypermapLiteError
         If it cannot be run, or ends without a usable result.
     """
+    scenario = load(args, overrides_of(args))
+    if not scenario.evaluator.is_client:
+        return _run(scenario, args)
+    from hypermap_lite.evaluation.channel import standard_channel
+
+    with standard_channel(is_given_back=False) as channel:  # what is printed from now on goes to stderr
+        return _run(scenario, args, channel)
+
+
+def _run(scenario: Scenario, args: Namespace, channel: Channel | None = None) -> int:
     from hypermap_lite.cli.progress import progress
     from hypermap_lite.cli.signals import StoppedAtOnce, StopSignals
     from hypermap_lite.evaluation.runner import StopReason
     from hypermap_lite.run import run_scenario
 
-    scenario = load(args, overrides_of(args))
+    signals = StopSignals()
     try:
-        with StopSignals() as signals, progress(is_quiet=args.quiet, is_verbose=args.verbose) as observer:
+        with signals, progress(is_quiet=args.quiet, is_verbose=args.verbose) as observer:
             result = run_scenario(
                 scenario,
                 observer=observer,
                 should_stop=lambda: signals.is_requested,
-                on_built=lambda: _set_aside(scenario) if args.fresh else None,
+                on_built=lambda: _begin(scenario, args),
                 retry_failed=args.retry_failed,
+                channel=channel,
             )
     except StoppedAtOnce as stop:
         return _say_how_to_go_on(scenario, args, stop.exit_status)
+    except ClientError:
+        if not signals.is_requested:
+            raise
+        return _say_how_to_go_on(scenario, args, 130)  # the same Ctrl-C has stopped the client
     if result.stop_reason is StopReason.INTERRUPTED:
         return _say_how_to_go_on(scenario, args, 130)
+    _show(result, scenario, args)
+    return 0
+
+
+def _show(result: Result, scenario: Scenario, args: Namespace) -> None:
+    """Print what a run has found and where it is, and draw its picture."""
     print(f"{scenario.application_name}: {count_states(result)}; the run ended because {result.stop_reason.value}\n")
     with _only_a_note("summary"):
         _print_front(result)
@@ -92,7 +115,6 @@ def execute(args: Namespace) -> int:
     if not args.no_plot:
         with _only_a_note("picture"):
             _draw(result)
-    return 0
 
 
 def overrides_of(args: Namespace) -> list[str]:
@@ -118,14 +140,14 @@ def command_to_go_on(args: Namespace) -> str:
     return shlex.join(words)
 
 
-def _set_aside(scenario: Scenario) -> None:
-    from hypermap_lite.history.backups import set_aside
+def _begin(scenario: Scenario, args: Namespace) -> None:
+    """Set the former run folder aside where a new run is asked for."""
+    from hypermap_lite.starting import is_going_on, set_run_folder_aside
 
-    # A scenario of one's own stays where it is; one that is the record of the run goes with it.
-    written = [layer.directory for layer in scenario.layers if layer.directory and "versions" not in layer.document]
-    kept = set_aside(scenario.output.directory, needed=written)
-    if kept is not None:
-        print(f"note: the former run folder is now {kept}", file=sys.stderr)
+    if args.fresh or (args.as_hypermapper and not is_going_on(scenario)):
+        kept = set_run_folder_aside(scenario)
+        if kept is not None:
+            print(f"note: the former run folder is now {kept}", file=sys.stderr)
 
 
 def _say_how_to_go_on(scenario: Scenario, args: Namespace, exit_status: int) -> int:

@@ -151,9 +151,10 @@ def differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[tuple[
     before, after = dict(_leaves("$", old)), dict(_leaves("$", new))
     for place in [*before, *(p for p in after if p not in before)]:
         values = before.get(place, ADDED_LATER.get(place, MISSING)), after.get(place, MISSING)
-        # null and no items are the default everywhere, so an option that an older version did not have yet is no
-        # difference
-        if not _FREE.fullmatch(place) and values[0] != values[1] and not set(values) <= {MISSING, "null", "[]"}:
+        # What is null is by default, what is false is off, and no items are none: an option that an older version did
+        # not have yet
+        is_new = MISSING in values and {*values} <= {MISSING, "null", "false", "[]"}
+        if not _FREE.fullmatch(place) and values[0] != values[1] and not is_new:
             yield place, *values
     names = [list(scenario.get("input_parameters", ())) for scenario in (old, new)]
     if names[0] != names[1] and set(names[0]) == set(names[1]):

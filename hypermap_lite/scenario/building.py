@@ -110,4 +110,5 @@ def _acquisition(section: Mapping[str, Any]) -> AcquisitionSpec:
 def _evaluator(section: Mapping[str, Any]) -> EvaluatorSpec:
     own = {key: value for key, value in section.items() if key not in EVALUATOR_KEYS}
     component = None if section["type"] == "none" else _component(own, "$.evaluator")
-    return EvaluatorSpec(component=component, **{key: section[key] for key in EVALUATOR_KEYS})
+    keys = {key: section[key] for key in EVALUATOR_KEYS}
+    return EvaluatorSpec(component=component, batch=section.get("batch", False), **keys)

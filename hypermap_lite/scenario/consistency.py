@@ -24,6 +24,7 @@ def check_consistency(document: Mapping[str, Any]) -> None:
     _check_joint_priors(document["input_parameters"], document["priors"])
     _check_limits(document)
     _check_budget(document)
+    _check_client(document["evaluator"])
 
 
 def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str, Any]]) -> None:
@@ -143,4 +144,14 @@ def _check_budget(document: Mapping[str, Any]) -> None:
             f"a design of {samples} does not fit into a budget of {evaluations} evaluations",
             allowed=f"1 to {evaluations}",
             hint="Raise budget.evaluations or shrink the design.",
+        )
+
+
+def _check_client(evaluator: Mapping[str, Any]) -> None:
+    if evaluator["type"] == "client_server" and evaluator["replicates"] > 1:
+        raise ScenarioError(
+            "$.evaluator.replicates",
+            f"a client cannot be asked {evaluator['replicates']} times for the same configuration",
+            allowed="1 with client_server",
+            hint="Let the client repeat and average.",
         )

@@ -196,7 +196,17 @@ def _n_levels(parameter: ParameterSpec) -> float:
 
 
 def _workers(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    if scenario.evaluator.workers > 1 and (why := _why_workers_are_idle(scenario)):
+        yield "$.evaluator.workers", f"they are not used: {why}."
+        return
     calls = scenario.budget.batch_size * scenario.evaluator.replicates
     if scenario.evaluator.workers > calls:
         text = f"only {calls} calls can run at once (batch_size x replicates); the other workers never get one."
         yield "$.evaluator.workers", text
+
+
+def _why_workers_are_idle(scenario: Scenario) -> str:
+    evaluator = scenario.evaluator
+    if evaluator.component is not None and evaluator.component.type == "exhaustive":
+        return "a table is looked up at once"
+    return "a batch is one call" if evaluator.batch or evaluator.is_client else ""

@@ -98,7 +98,10 @@ class EvaluatorSpec:
     """Section ``evaluator``: the black box and how often and how long it is called."""
 
     component: ComponentSpec | None
-    """None if there is none: the run is driven by ask and tell."""
+    """None if there is none: the run is driven by ask and tell, or by a function passed from Python."""
+
+    batch: bool = False
+    """Whether a Python function, the scenario's or one that is passed, takes a whole batch in one call."""
 
     replicates: int = 1
     """Calls per configuration, each with its own seed; objectives are averaged."""
@@ -111,6 +114,11 @@ class EvaluatorSpec:
 
     max_consecutive_failures: int = 5
     """The run stops (exit status 4) after so many configurations in a row without a usable result."""
+
+    @property
+    def is_client(self) -> bool:
+        """Whether a client at the other end of stdin and stdout evaluates."""
+        return self.component is not None and self.component.type == "client_server"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -147,12 +147,15 @@ def _budget(scenario: Scenario) -> str:
 def _evaluator(scenario: Scenario) -> str:
     evaluator = scenario.evaluator
     if evaluator.component is None:
-        return "none: driven by ask and tell, or a function passed from Python"
+        calls = ", called once per batch" if evaluator.batch else ""
+        return f"none: driven by ask and tell, or a function passed from Python{calls}"
     options = evaluator.component.options
-    target = options.get("function") or " ".join(options.get("command", ()))
+    target = options.get("function") or options.get("file") or " ".join(options.get("command", ()))
     limit = "no time limit" if evaluator.timeout_seconds is None else f"{evaluator.timeout_seconds:g} s each"
-    calls = f"{evaluator.replicates} per configuration, {evaluator.workers} at a time, {limit}"
-    return f"{evaluator.component.type} {_shorten(str(target), 60)}; calls: {calls}"
+    what = " ".join(filter(None, [evaluator.component.type, _shorten(str(target), 60)]))
+    if evaluator.batch or evaluator.is_client:
+        return f"{what}; calls: one per batch, {limit}"
+    return f"{what}; calls: {evaluator.replicates} per configuration, {evaluator.workers} at a time, {limit}"
 
 
 def _component(spec: ComponentSpec) -> str:

@@ -246,6 +246,9 @@ def _variant(document: Mapping[str, Any], name: str, directory: Path) -> Variant
         problem = f"its runs would end after {effective.budget.minutes:g} minutes, wherever they are then"
         hint = 'Add "budget.minutes": null to its set.'
         raise ScenarioError(path, problem, allowed="a budget of evaluations alone", hint=hint)
+    if effective.evaluator.is_client:
+        problem, allowed = "its runs would each need a client of their own", "an evaluator that a study can call"
+        raise ScenarioError(path, problem, allowed=allowed)
     return Variant(
         name=name,
         label=entry["label"] or name.replace("_", " "),
