@@ -14,7 +14,6 @@ from hypermap_lite.evaluation import EVALUATORS
 from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import Evaluator
 from hypermap_lite.evaluation.exhaustive import Exhaustive
-from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.python_function import PythonFunction
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers import MAXIMIZERS
@@ -348,18 +347,11 @@ def _surroundings(spec: ComponentSpec, scenario: Scenario) -> dict[str, Any]:
     if spec.type == "python":
         folders = (*scenario.folders_of(f"{spec.path}.function"), Path.cwd())
         return {"search_path": tuple(dict.fromkeys(map(str, folders)))}
-    needs = {"space": build_space(scenario), "feasible": _feasible_column(scenario)}
+    space = build_space(scenario)
     if spec.type == "exhaustive":
         places = (*scenario.folders_of(f"{spec.path}.file"), Path.cwd())
-        return {**needs, "folders": tuple(dict.fromkeys(places))}
-    return needs
-
-
-def _feasible_column(scenario: Scenario) -> FeasibleColumn | None:
-    spec = getattr(scenario, "feasible_output", None)
-    if spec is None:
-        return None
-    return FeasibleColumn(name=spec.name, true_value=spec.true_value, false_value=spec.false_value)
+        return {"space": space, "folders": tuple(dict.fromkeys(places))}
+    return {"space": space}
 
 
 def evaluator_warnings(scenario: Scenario, evaluator: Evaluator) -> Iterator[str]:

@@ -60,15 +60,7 @@ AROUND = {
 }
 """Keys of a section that are not options of the member, besides its kind."""
 
-FROM_ELSEWHERE = {
-    "objectives",
-    "feasible_output",
-    "search_path",
-    "working_directory",
-    "parameters",
-    "space",
-    "folders",
-}
+FROM_ELSEWHERE = {"objectives", "search_path", "working_directory", "parameters", "space", "feasible_output", "folders"}
 """Fields of evaluators that the rest of the scenario fills in."""
 
 MEMBERS = [

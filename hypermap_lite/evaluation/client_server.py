@@ -12,9 +12,9 @@ from hypermap_lite.errors import ClientError
 from hypermap_lite.evaluation.channel import Channel
 from hypermap_lite.evaluation.echoes import differences, find_request
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator, answer, failure
-from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.outcome import Outcome, Replicate
 from hypermap_lite.evaluation.wire import END, ReplyFormat, fields_of, request_lines
+from hypermap_lite.objectives import FeasibleOutput
 from hypermap_lite.space.search_space import SearchSpace
 
 logger = logging.getLogger(__name__)
@@ -42,7 +42,7 @@ class ClientServer:
     space: SearchSpace
     """What is asked for, and in which order the columns stand."""
 
-    feasible: FeasibleColumn | None = None
+    feasible_output: FeasibleOutput | None = None
     """The column of the reply that says what is feasible, if there is one."""
 
     def __call__(self, request: EvaluationRequest) -> Outcome:
@@ -78,7 +78,7 @@ class ClientServer:
     def _rows(
         self, requests: Sequence[EvaluationRequest], channel: Channel, deadline: float | None
     ) -> Iterator[Replicate]:
-        form = ReplyFormat(parameters=self.space.names, objectives=self.objectives, feasible=self.feasible)
+        form = ReplyFormat(parameters=self.space.names, objectives=self.objectives, feasible=self.feasible_output)
         before = time.perf_counter()
         header = fields_of(_next_line(channel, deadline, "the header of its reply"))
         form.check_header(header)

@@ -11,11 +11,11 @@ from typing import Any
 
 from hypermap_lite.errors import EvaluationError, ScenarioError
 from hypermap_lite.evaluation.evaluator import EvaluationRequest
-from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.outcome import Outcome
 from hypermap_lite.evaluation.table_index import Key, Table, key_of, keys_of, read_table, same_text
 from hypermap_lite.evaluation.text_rows import outcome_of_texts
 from hypermap_lite.history.csv_format import format_configuration
+from hypermap_lite.objectives import FeasibleOutput
 from hypermap_lite.space.search_space import SearchSpace
 
 
@@ -42,7 +42,7 @@ class Exhaustive:
     space: SearchSpace
     """What a row is looked up by."""
 
-    feasible: FeasibleColumn | None = None
+    feasible_output: FeasibleOutput | None = None
     """The column that says which rows are feasible, if there is one."""
 
     folders: Sequence[str | Path] = (".",)
@@ -62,11 +62,11 @@ class Exhaustive:
 
     def __reduce__(self) -> tuple[Callable[..., Exhaustive], tuple[Any, ...]]:
         """Pickle the file's place rather than its content."""
-        return _rebuild, (self.file, self.objectives, self.space, self.feasible, self.folders)
+        return _rebuild, (self.file, self.objectives, self.space, self.feasible_output, self.folders)
 
     @property
     def _answers(self) -> tuple[str, ...]:
-        return (*self.objectives, *([self.feasible.name] if self.feasible else []))
+        return (*self.objectives, *([self.feasible_output.name] if self.feasible_output else []))
 
     @property
     def _path(self) -> Path:
@@ -129,7 +129,7 @@ class Exhaustive:
             raise EvaluationError(f"{self._path.name} has no row with {shown}")
         row = dict(zip(self._table.header, map(str.strip, self._table.rows[number]), strict=True))
         try:
-            return outcome_of_texts(row, self.objectives, self.feasible)
+            return outcome_of_texts(row, self.objectives, self.feasible_output)
         except ValueError as error:
             raise EvaluationError(f"line {self._table.lines[number]} of {self._path.name}: {error}") from None
 
@@ -138,7 +138,7 @@ def _rebuild(
     file: str,
     objectives: Sequence[str],
     space: SearchSpace,
-    feasible: FeasibleColumn | None,
+    feasible_output: FeasibleOutput | None,
     folders: Sequence[str | Path],
 ) -> Exhaustive:
-    return Exhaustive(file=file, objectives=objectives, space=space, feasible=feasible, folders=folders)
+    return Exhaustive(file=file, objectives=objectives, space=space, feasible_output=feasible_output, folders=folders)

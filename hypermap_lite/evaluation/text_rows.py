@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from hypermap_lite.evaluation.evaluator import FEASIBLE_KEY, outcome_of
-from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.outcome import Outcome, State
+from hypermap_lite.objectives import FeasibleOutput
 
 INFEASIBLE: Final = "the black box answered: not feasible"
 
@@ -18,7 +18,7 @@ _TRUTH: Final = {"true": 1.0, "false": 0.0}
 def outcome_of_texts(
     row: Mapping[str, str],
     objectives: Sequence[str],
-    feasible: FeasibleColumn | None = None,
+    feasible: FeasibleOutput | None = None,
     extras: Sequence[str] = (),
 ) -> Outcome:
     """Return what a row says.
@@ -38,7 +38,7 @@ def outcome_of_texts(
     Returns
     -------
     Outcome
-        Completed; failed if an objective is NaN or infinite; or infeasible, with the values if all are there.
+        Completed; failed if an objective is NaN or infinite; or infeasible, with those values that are finite.
 
     Raises
     ------
@@ -46,12 +46,19 @@ def outcome_of_texts(
         If an objective is no number, or the feasibility neither of its two texts.
     """
     numbers = _extra_numbers(row, extras)
-    if feasible is None or feasible.read(row[feasible.name]):
+    if feasible is None or _is_feasible(feasible, row[feasible.name]):
         return outcome_of({**{name: _number(row[name], name) for name in objectives}, **numbers}, objectives)
     given = {name: _number(row[name], name) for name in objectives if row[name]}
-    is_complete = len(given) == len(objectives) and all(map(math.isfinite, given.values()))
+    values = {name: value for name, value in given.items() if math.isfinite(value)}
     metrics = {name: value for name, value in numbers.items() if math.isfinite(value)}
-    return Outcome(state=State.INFEASIBLE, values=given if is_complete else {}, metrics=metrics, error=INFEASIBLE)
+    return Outcome(state=State.INFEASIBLE, values=values, metrics=metrics, error=INFEASIBLE)
+
+
+def _is_feasible(output: FeasibleOutput, text: str) -> bool:
+    verdict = output.verdict(text, None)
+    if verdict is None:
+        raise ValueError(f"'{output.name}' is {text!r}, neither {output.true_value!r} nor {output.false_value!r}")
+    return verdict
 
 
 def _extra_numbers(row: Mapping[str, str], names: Sequence[str]) -> dict[str, float]:

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from hypermap_lite.errors import ClientError, nearest
-from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.outcome import Outcome
 from hypermap_lite.evaluation.text_rows import outcome_of_texts
 from hypermap_lite.history.csv_format import format_configuration, format_record
+from hypermap_lite.objectives import FeasibleOutput
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import Configuration
 
@@ -53,7 +53,7 @@ class ReplyFormat:
 
     parameters: Sequence[str]
     objectives: Sequence[str]
-    feasible: FeasibleColumn | None = None
+    feasible: FeasibleOutput | None = None
     """None where the client does not answer on feasibility."""
 
     @property

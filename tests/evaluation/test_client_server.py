@@ -8,10 +8,9 @@ import pytest
 from hypermap_lite.errors import ClientError
 from hypermap_lite.evaluation.channel import Channel
 from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
-from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.outcome import State
 from hypermap_lite.space import IntegerParameter, RealParameter, SearchSpace
-from tests.evaluation.examples import request
+from tests.evaluation.examples import Valid, request
 
 SPACE = SearchSpace((RealParameter(name="x", low=-2.0, high=2.0), IntegerParameter(name="n", low=0, high=9)))
 ASKED = ({"x": 0.1, "n": 1}, {"x": 0.2, "n": 2}, {"x": 0.3, "n": 3})
@@ -39,7 +38,7 @@ class Client(threading.Thread):
 
 
 def exchange(tmp_path, client, *, feasible=None, timeout=None, asked=ASKED):
-    evaluator = ClientServer(objectives=("f",), space=SPACE, feasible=feasible)
+    evaluator = ClientServer(objectives=("f",), space=SPACE, feasible_output=feasible)
     requests = [request(tmp_path, trial=i, **configuration) for i, configuration in enumerate(asked)]
     return ClientExecutor(client.channel, timeout).run(evaluator, requests)
 
@@ -132,7 +131,7 @@ def test_value_that_is_not_finite_is_a_failed_evaluation(tmp_path):
 
 
 def test_feasibility_is_answered_by_its_texts(tmp_path):
-    column = FeasibleColumn(name="ok", true_value="1", false_value="0")
+    column = Valid(name="ok", true_value="1", false_value="0")
     reply = "x,n,f,ok\n0.1,1,5,1\n0.2,2,6,0\n0.3,3,7,yes\n"
     calls = exchange(tmp_path, Client(reply), feasible=column)
     assert [next(calls).outcome.state for _ in range(2)] == [State.COMPLETED, State.INFEASIBLE]

@@ -1,12 +1,12 @@
-"""Tests for text_rows.py and feasible_column.py."""
+"""Tests for text_rows.py."""
 
 import pytest
 
-from hypermap_lite.evaluation.feasible_column import FeasibleColumn
 from hypermap_lite.evaluation.outcome import State
 from hypermap_lite.evaluation.text_rows import outcome_of_texts
+from tests.evaluation.examples import Valid
 
-VALID = FeasibleColumn(name="ok", true_value="1", false_value="0")
+VALID = Valid(name="ok", true_value="1", false_value="0")
 
 
 def outcome(feasible=None, extras=(), **row):
@@ -34,11 +34,11 @@ def test_feasible_row_has_values():
     assert outcome(VALID, f="1", g="2", ok="1").state is State.COMPLETED
 
 
-def test_infeasible_row_keeps_its_values_where_it_has_all():
+def test_infeasible_row_keeps_the_values_it_has():
     whole, partly = outcome(VALID, f="1", g="2", ok="0"), outcome(VALID, f="1", g="", ok="0")
     assert (whole.state, whole.values) == (State.INFEASIBLE, {"f": 1.0, "g": 2.0})
-    assert (partly.state, partly.values) == (State.INFEASIBLE, {})
-    assert outcome(VALID, f="1", g="nan", ok="0").values == {}
+    assert (partly.state, partly.values) == (State.INFEASIBLE, {"f": 1.0})
+    assert outcome(VALID, f="1", g="nan", ok="0").values == {"f": 1.0}
 
 
 @pytest.mark.parametrize("text", ["True", "", "0.0"])
