@@ -133,3 +133,32 @@ def test_a_uniform_prior_counts_only_with_a_range() -> None:
     ranged, design = prior_of({"type": "uniform", "low": 10})
     assert np.exp(ranged.log_density(np.array([[0.4], [0.6]]))) == pytest.approx([0, 2])
     assert type(design).__name__ == "PriorSampling"
+
+
+def test_a_client_is_asked_for_the_whole_design_first() -> None:
+    design, budget = {"number_of_samples": 5}, {"batch_size": 2}
+    plan = assembly.build_plan(load(evaluator="client_server", design_of_experiment=design, budget=budget))
+    assert (plan.first, plan.size) == (5, 2)
+    assert assembly.build_plan(load(design_of_experiment=design, budget=budget)).first is None
+
+
+def test_a_batch_function_may_be_named_or_given() -> None:
+    assert assembly.build_evaluator(load(evaluator={"batch": True}), lambda columns: []).batch
+    named = {"type": "python", "function": "tests.evaluation.black_boxes:batch_of_spheres", "batch": True}
+    assert assembly.build_evaluator(load(evaluator=named)).batch
+
+
+def test_a_table_is_found_beside_the_file_that_names_it_and_its_gaps_are_told(tmp_path: Path) -> None:
+    parameters = {"n": PARAMETERS["n"]}
+    for folder in ("common", "mine"):
+        (tmp_path / folder).mkdir()
+    content = scenario_of(input_parameters=parameters, evaluator={"type": "exhaustive", "file": "table.csv"})
+    (tmp_path / "common" / "base.json").write_text(json.dumps(content))
+    (tmp_path / "common" / "table.csv").write_text("n,near,far\n" + "".join(f"{n},1,2\n" for n in range(5)))
+    (tmp_path / "mine" / "leaf.json").write_text('{"extends": "../common/base.json"}')
+    assert assembly.validate(load_scenario(tmp_path / "mine" / "leaf.json")) == [
+        "$.evaluator.file: the table holds 5 configurations of 10 (50 %); any other is a failed evaluation."
+    ]
+    (tmp_path / "common" / "table.csv").unlink()
+    with pytest.raises(ScenarioError, match=r"\$\.evaluator\.file: there is no file"):
+        assembly.validate(load_scenario(tmp_path / "mine" / "leaf.json"))

@@ -8,7 +8,14 @@ from pathlib import Path
 import pytest
 
 from hypermap_lite import __version__, cli
-from hypermap_lite.errors import NoValidEvaluationError, RepeatedFailureError, RunFolderError, ScenarioError, UsageError
+from hypermap_lite.errors import (
+    ClientError,
+    NoValidEvaluationError,
+    RepeatedFailureError,
+    RunFolderError,
+    ScenarioError,
+    UsageError,
+)
 from tests.cli.scenarios import write_scenario
 
 
@@ -30,7 +37,7 @@ def test_help_names_commands_exit_statuses_and_two_examples(capsys, option):
         cli.main([option])
     text = capsys.readouterr().out
     assert all(f"    {command} " in text for command in cli.COMMANDS)
-    assert all(f"  {status} " in text for status in (0, 1, 2, 3, 4, 130, 143))
+    assert all(f"  {status} " in text for status in (0, 1, 2, 3, 4, 5, 130, 143))
     assert text.count("  python -m hypermap_lite ") >= 2
 
 
@@ -65,6 +72,7 @@ def test_first_argument_that_is_no_command_is_a_scenario(monkeypatch, arguments)
         (RunFolderError("locked"), 2),
         (NoValidEvaluationError("none"), 3),
         (RepeatedFailureError("again"), 4),
+        (ClientError("gone"), 5),
     ],
 )
 def test_each_error_has_its_exit_status_and_no_traceback(capsys, failing_run, error, status):

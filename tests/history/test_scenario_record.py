@@ -140,6 +140,15 @@ def test_an_option_that_older_records_do_not_have_is_no_difference_while_it_is_n
     assert list(differing(before, {"prior": {"type": "uniform", "low": 2}})) == [("$.prior.low", "nothing", "2")]
 
 
+def test_an_option_that_older_records_do_not_have_is_no_difference_while_it_is_off():
+    before, now = {"evaluator": {"type": "python"}}, {"evaluator": {"type": "python", "batch": False}}
+    assert list(differing(before, now)) == []
+    assert [place for place, *_ in differing(before, {"evaluator": {"type": "python", "batch": True}})] == [
+        "$.evaluator.batch"
+    ]
+    assert [place for place, *_ in differing({"noise": True}, {"noise": False})] == ["$.noise"]
+
+
 def test_the_file_of_a_prior_may_differ_but_not_its_points(tmp_path):
     def scenario(file, last):
         return {"priors": [{"type": "kde", "file": file, "points": {"x": [*map(float, range(500)), last]}}]}

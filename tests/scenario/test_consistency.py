@@ -85,3 +85,8 @@ def test_a_uniform_prior_without_a_range_leaves_room_for_a_joint_one() -> None:
 
 def test_a_density_may_speak_of_any_kind_of_parameter() -> None:
     check_consistency(complete(priors=[{"type": "kde", "points": {"x": [1], "size": [32], "mode": ["safe"]}}]))
+
+
+def test_a_client_is_asked_once_for_a_configuration() -> None:
+    with pytest.raises(ScenarioError, match=r"\$\.evaluator\.replicates: a client cannot be asked 2 times"):
+        complete(evaluator={"type": "client_server", "replicates": 2})

@@ -169,3 +169,19 @@ def test_commands_are_looked_at() -> None:
 def test_workers_that_never_get_a_call_are_named() -> None:
     (warning,) = warnings(evaluator={"workers": 4, "replicates": 3})
     assert "only 3 calls" in warning
+
+
+@pytest.mark.parametrize(
+    ("evaluator", "why"),
+    [
+        ({"type": "client_server"}, "a batch is one call"),
+        ({"type": "python", "function": "a:b", "batch": True}, "a batch is one call"),
+        ({"batch": True}, "a batch is one call"),
+        ({"type": "exhaustive", "file": "t.csv"}, "a table is looked up at once"),
+    ],
+)
+def test_workers_without_work_are_named(evaluator: dict[str, Any], why: str) -> None:
+    budget = {"batch_size": 4}
+    expected = [f"$.evaluator.workers: they are not used: {why}."]
+    assert warnings(budget=budget, evaluator=evaluator | {"workers": 2}) == expected
+    assert warnings(budget=budget, evaluator=evaluator) == []

@@ -69,6 +69,16 @@ def test_a_budget_of_the_design_alone_names_no_model() -> None:
     assert "gaussian_process" not in page(budget={"evaluations": 5})
 
 
+def test_the_evaluator_line_says_where_a_batch_is_one_call() -> None:
+    assert "client_server; calls: one per batch, 60 s each" in page(
+        evaluator={"type": "client_server", "timeout_seconds": 60}
+    )
+    batch = {"type": "python", "function": "lab:measure", "batch": True}
+    assert "python lab:measure; calls: one per batch, no time limit" in page(evaluator=batch)
+    assert "a function passed from Python, called once per batch" in page(evaluator={"batch": True})
+    assert "exhaustive t.csv; calls: 1 per" in page(evaluator={"type": "exhaustive", "file": "t.csv"})
+
+
 def test_the_evaluator_line_says_what_is_called_and_how_often() -> None:
     evaluator = {"type": "command", "command": ["./run", "{x}"], "replicates": 7, "workers": 2, "timeout_seconds": 60}
     assert "command ./run {x}; calls: 7 per configuration, 2 at a time, 60 s each" in page(evaluator=evaluator)

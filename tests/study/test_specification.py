@@ -141,6 +141,10 @@ BAD = {
         ["$.variants.b: its objectives are f (minimize), g (minimize, reference point 3); those of 'a' are"],
     ),
     "time limit": ({"set": {"budget.minutes": 2}}, ["$.variants.a: its runs would end after 2 minutes", "null"]),
+    "client": (
+        {"variants": {"a": {**A, "set": {"evaluator": "client_server"}}}},
+        ["$.variants.a: its runs would each need a client of their own", "an evaluator that a study can call"],
+    ),
     "same label": (
         {"variants": {"a": {**A, "label": "b"}, "b": A}},
         ["$.variants.b.label: 'a' has the label 'b' too"],
