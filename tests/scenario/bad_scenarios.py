@@ -345,7 +345,10 @@ BAD: dict[str, Bad] = {
         ("$.design_of_experiment.number_of_samples", "design of 7", "budget of 5", "1 to 5"),
     ),
     "zero_batch_size": Bad(changed("budget", {"batch_size": 0}), ("$.budget.batch_size", "0 is too small", ">= 1")),
-    "unknown_evaluator": Bad(changed("evaluator", "shell"), ("$.evaluator.type", '"shell"', "python, command, none")),
+    "unknown_evaluator": Bad(
+        changed("evaluator", "shell"),
+        ("$.evaluator.type", '"shell"', "python, command, client_server, exhaustive, none"),
+    ),
     "function_without_module": Bad(
         changed("evaluator", {"type": "python", "function": "evaluate"}),
         ("$.evaluator.function", '"evaluate"', "module:name"),

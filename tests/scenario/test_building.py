@@ -30,7 +30,7 @@ def test_objectives_have_goals() -> None:
 def test_options_of_the_evaluator_are_not_mixed_with_those_of_the_calls() -> None:
     evaluator = built(evaluator={"type": "python", "function": "a:b", "replicates": 7}).evaluator
     assert evaluator.component is not None
-    assert evaluator.component.options == {"function": "a:b"}
+    assert evaluator.component.options == {"function": "a:b", "batch": False}
     assert evaluator.replicates == 7
 
 
