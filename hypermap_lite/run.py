@@ -173,6 +173,8 @@ def run_scenario(
         canonical=scenario.canonical,
         function=None if function is None else name_of(function),
         feasible_output=scenario.feasible_output,
+        samples_file=_path(scenario.output.samples_file),
+        pareto_file=_path(scenario.output.pareto_file),
     )
     with ExitStack() as stack:
         if isinstance(evaluator, ClientServer) and channel is None:
@@ -218,6 +220,10 @@ def _say_goodbye(executor: Executor) -> None:
     """Tell a client that the run has ended, all files being written and free."""
     if isinstance(executor, ClientExecutor):
         executor.say_goodbye()
+
+
+def _path(text: str | None) -> Path | None:
+    return None if text is None else Path(text)
 
 
 def _build(scenario: Scenario, function: Callable[..., Any] | None) -> tuple[Evaluator, Optimizer]:

@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Final
 
 from hypermap_lite.typing import Configuration
+
+EARLIER: Final = "earlier"
+"""Phase of an evaluation that was made before the run, by somebody else."""
 
 
 class State(Enum):
@@ -67,7 +71,7 @@ class Suggestion:
 
     configuration: Configuration
     phase: str
-    """Which rule chose it: ``default``, ``design``, ``model``, ``random``, ``prior``, or the phase of a search."""
+    """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``prior``, or that of a search."""
 
     prior_weight: float | None = None
     """Exponent the user prior had in the choice; None where it had no part."""

@@ -13,9 +13,10 @@ from typing import Any, Final, Self
 import numpy as np
 
 from hypermap_lite.errors import RunFolderError
-from hypermap_lite.evaluation.outcome import Evaluation, Replicate, State
+from hypermap_lite.evaluation.outcome import EARLIER, Evaluation, Replicate, State
 from hypermap_lite.history.backups import keep_copies
 from hypermap_lite.history.csv_format import complete_length, format_record, parse_rows, read_records
+from hypermap_lite.history.exports import Exports
 from hypermap_lite.history.files import append_durably, explained, truncate, write_atomically
 from hypermap_lite.history.lock import FolderLock
 from hypermap_lite.history.rows import EvaluationsFormat, HistoryFormat, check_header, read_history
@@ -48,6 +49,8 @@ class RunFolder:
         Name of the Python function that is called in place of the scenario's evaluator, if one was passed.
     feasible_output
         The column that says which configurations are feasible, if there is one.
+    samples_file, pareto_file
+        Files in HyperMapper's format that are kept up to date with it; see `Exports`.
     """
 
     def __init__(
@@ -59,6 +62,8 @@ class RunFolder:
         canonical: Mapping[str, Any],
         function: str | None = None,
         feasible_output: FeasibleOutput | None = None,
+        samples_file: Path | None = None,
+        pareto_file: Path | None = None,
     ) -> None:
         self.path = Path(path).absolute()
         self.objectives = tuple(objectives)
@@ -71,6 +76,7 @@ class RunFolder:
         self.feasible_output = feasible_output
         self._history = HistoryFormat(space, objectives, feasible_output)
         self._calls = EvaluationsFormat(space, objectives, feasible_output=feasible_output)
+        self._exports = Exports(self._history, samples_file=samples_file, pareto_file=pareto_file)
         self._open = ExitStack()
 
     @property
@@ -111,6 +117,7 @@ class RunFolder:
             stack.enter_context(run_log(self.path / "run.log"))
             self._load()
             write_scenario(self.scenario_path, self.canonical, self.function)
+            self._exports.restore(self.evaluations)
             self._open = stack.pop_all()
         return self
 
@@ -143,7 +150,8 @@ class RunFolder:
 
     def _warn_of_missing_calls(self) -> None:
         counts = Counter(trial for trial, _ in self.replicates)
-        incomplete = [e.trial for e in self.evaluations if counts[e.trial] < e.replicates]
+        own = [e for e in self.evaluations if e.suggestion.phase != EARLIER]
+        incomplete = [e.trial for e in own if counts[e.trial] < e.replicates]
         if incomplete:
             logger.warning(
                 "%s: calls of %d finished trials are missing, the first of trial %d (was the file cut or deleted?); "
@@ -190,6 +198,16 @@ class RunFolder:
         else:
             write_atomically(self.history_path, format_record(self._history.columns) + row)
         self.evaluations.append(evaluation)
+        self._exports.append(evaluation)
+
+    def import_earlier(self, evaluations: Sequence[Evaluation]) -> None:
+        """Make evaluations of an earlier experiment the first rows of a run that has none yet, all at once."""
+        if self.evaluations:
+            raise RunFolderError(f"{self.history_path}: has rows already; earlier ones can only come first")
+        rows = "".join(map(self._history.format, evaluations))
+        write_atomically(self.history_path, format_record(self._history.columns) + rows)
+        self.evaluations = list(evaluations)
+        self._exports.restore(self.evaluations)
 
     def set_failures_aside(self) -> int:
         """Take the failures at the end out of the files, so that they are evaluated again; return their number.
@@ -219,8 +237,10 @@ class RunFolder:
 
     def write_pareto(self) -> None:
         """Rewrite ``pareto.csv`` from the rows so far."""
-        rows = [self._history.format(e) for e in self.pareto_front()]
-        write_atomically(self.pareto_path, format_record(self._history.columns) + "".join(rows))
+        front = self.pareto_front()
+        rows = "".join(map(self._history.format, front))
+        write_atomically(self.pareto_path, format_record(self._history.columns) + rows)
+        self._exports.write_front(front)
 
     def pareto_front(self) -> list[Evaluation]:
         """Return the non-dominated completed evaluations, in the order of the trials."""

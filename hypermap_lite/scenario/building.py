@@ -45,7 +45,8 @@ def build_scenario(
         acquisition=_acquisition(document["acquisition"]),
         maximizer=_component(document["maximizer"], "$.maximizer"),
         evaluator=_evaluator(document["evaluator"]),
-        output=OutputSpec(directory=os.path.expanduser(document["output"]["directory"])),
+        output=_output(document["output"]),
+        earlier_evaluations=document["earlier_evaluations"],
         canonical=document,
         directory=directory,
         layers=layers,
@@ -112,3 +113,8 @@ def _evaluator(section: Mapping[str, Any]) -> EvaluatorSpec:
     component = None if section["type"] == "none" else _component(own, "$.evaluator")
     keys = {key: section[key] for key in EVALUATOR_KEYS}
     return EvaluatorSpec(component=component, batch=section.get("batch", False), **keys)
+
+
+def _output(section: Mapping[str, Any]) -> OutputSpec:
+    files = {key: section[key] and os.path.expanduser(section[key]) for key in ("samples_file", "pareto_file")}
+    return OutputSpec(**{**section, **files, "directory": os.path.expanduser(section["directory"])})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
@@ -11,6 +12,9 @@ from hypermap_lite.evaluation.placeholders import BUILT_IN
 from hypermap_lite.history.rows import RESERVED_COLUMNS
 from hypermap_lite.scenario.defaults import default_samples, has_belief
 from hypermap_lite.scenario.messages import enumerate_names
+
+RUN_FILES: Final = ("scenario.json", "history.csv", "evaluations.csv", "pareto.csv", "run.log")
+"""Files of the run folder that no other file may take the place of."""
 
 RESERVED_NAMES: Final = RESERVED_COLUMNS | {"feasible"}
 """Columns of the result files, and what evaluators answer besides objectives: no names for the user's own things."""
@@ -25,6 +29,7 @@ def check_consistency(document: Mapping[str, Any]) -> None:
     _check_limits(document)
     _check_budget(document)
     _check_client(document["evaluator"])
+    _check_output(document["output"])
 
 
 def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str, Any]]) -> None:
@@ -155,3 +160,17 @@ def _check_client(evaluator: Mapping[str, Any]) -> None:
             allowed="1 with client_server",
             hint="Let the client repeat and average.",
         )
+
+
+def _check_output(output: Mapping[str, Any]) -> None:
+    """Refuse two output files of the same name."""
+    taken = {os.path.abspath(os.path.join(output["directory"], name)): f"the run folder's {name}" for name in RUN_FILES}
+    taken[os.path.abspath(output["directory"])] = "the run folder"
+    for key in ("samples_file", "pareto_file"):
+        if output[key] is None:
+            continue
+        place = os.path.abspath(output[key])
+        if place in taken:
+            problem = f"'{output[key]}' is {taken[place]}"
+            raise ScenarioError(f"$.output.{key}", problem, allowed="a file of its own")
+        taken[place] = f"the {key} already"

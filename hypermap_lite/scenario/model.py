@@ -128,6 +128,18 @@ class OutputSpec:
     directory: str
     """Run folder; relative to the working directory."""
 
+    samples_file: str | None = None
+    """CSV of all evaluations in HyperMapper's format, beside the run folder; relative to the working directory."""
+
+    pareto_file: str | None = None
+    """The same of the Pareto front."""
+
+    parameter_importance: bool = False
+    """Whether to report at the end how much each parameter matters."""
+
+    posterior_best: bool = False
+    """Whether to report at the end what is best by the surrogate."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario:
@@ -150,6 +162,9 @@ class Scenario:
     joint_priors: tuple[ComponentSpec, ...] = ()
     constraints: tuple[str, ...] = ()
     """Conditions over the parameters that every configuration meets, as the user wrote them."""
+
+    earlier_evaluations: str | None = None
+    """CSV file or run folder whose rows come before the run's own."""
 
     seed: int = 0
     description: str = ""

@@ -27,6 +27,9 @@ OWN_KEYS: Final = {
 }
 """Keys of the scenarios that a study sets for each run itself, and what to change instead."""
 
+UNSHARED: Final = ("samples_file", "pareto_file")
+"""Files of a scenario's output that a study leaves out: all its runs would write the same one."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Variant:
@@ -74,13 +77,14 @@ class Run:
     def overrides(self) -> tuple[str, ...]:
         """Changes to the variant's scenario, those of this run included."""
         own = (f"seed={self.seed}", f"output.directory={json.dumps(str(self.folder))}")
-        return (*self.variant.overrides, *own)
+        return (*self.variant.overrides, *(f"output.{key}=null" for key in UNSHARED), *own)
 
     @property
     def canonical(self) -> Mapping[str, Any]:
         """The effective scenario as JSON."""
         scenario = self.variant.effective.canonical
-        return {**scenario, "seed": self.seed, "output": {**scenario["output"], "directory": str(self.folder)}}
+        output = {**scenario["output"], "directory": str(self.folder), **dict.fromkeys(UNSHARED)}
+        return {**scenario, "seed": self.seed, "output": output}
 
     def check_folder(self) -> None:
         """Make sure that the folder, if there is one, is that of this run.

@@ -90,3 +90,16 @@ def test_a_density_may_speak_of_any_kind_of_parameter() -> None:
 def test_a_client_is_asked_once_for_a_configuration() -> None:
     with pytest.raises(ScenarioError, match=r"\$\.evaluator\.replicates: a client cannot be asked 2 times"):
         complete(evaluator={"type": "client_server", "replicates": 2})
+
+
+@pytest.mark.parametrize(
+    ("output", "problem"),
+    [
+        ({"samples_file": "a.csv", "pareto_file": "./a.csv"}, "'./a.csv' is the samples_file already"),
+        ({"directory": "runs/a", "samples_file": "runs/a/history.csv"}, "is the run folder's history.csv"),
+        ({"directory": "runs/a", "pareto_file": "runs/a"}, "'runs/a' is the run folder"),
+    ],
+)
+def test_two_output_files_of_one_name_are_refused(output: dict[str, str], problem: str) -> None:
+    with pytest.raises(ScenarioError, match=problem):
+        complete(output=output)

@@ -6,6 +6,7 @@ import pytest
 
 from hypermap_lite.cli import main
 from hypermap_lite.errors import ScenarioError
+from hypermap_lite.scenario import load_scenario
 from hypermap_lite.study import load_study
 from tests.study.studies import TWO, A, loaded, write_study
 
@@ -204,3 +205,10 @@ def test_file_that_is_no_study_is_named_once(tmp_path, capsys, text, message):
         file.write_text(text)
     assert main(["study", str(file)]) == 2
     assert capsys.readouterr().err.startswith("error: " + message.format(file=file))
+
+
+def test_runs_of_a_study_do_not_share_a_samples_file(tmp_path):
+    study = loaded(tmp_path, set={"output.samples_file": "all.csv"})
+    for run in study.runs():
+        assert load_scenario(run.variant.scenario, overrides=run.overrides).output.samples_file is None
+        assert run.canonical["output"]["samples_file"] is None
