@@ -8,6 +8,7 @@ from typing import Any
 
 from hypermap_lite.assembly import build_history, build_optimizer
 from hypermap_lite.errors import UsageError
+from hypermap_lite.evaluation.earlier import earlier_evaluations
 from hypermap_lite.evaluation.evaluator import outcome_of
 from hypermap_lite.evaluation.outcome import Evaluation, Outcome, State, Suggestion
 from hypermap_lite.history.history import History
@@ -26,7 +27,8 @@ class Optimizer:
     scenario
         A scenario file, or its content as a mapping. Its evaluator is not used.
     evaluations
-        Trials of an earlier run to go on from, in order, as `read_history` returns them.
+        Trials of an earlier run to go on from, in order, as `read_history` returns them. If there are none, those of
+        the scenario's ``earlier_evaluations`` come first.
     overrides
         Changes to the scenario, as in ``surrogate.type=random_forest``.
 
@@ -62,6 +64,8 @@ class Optimizer:
         self.scenario = load_scenario(scenario, overrides=overrides)
         history = build_history(self.scenario)
         history.extend(evaluations)
+        if not len(history):
+            history.extend(earlier_evaluations(self.scenario, history.space))
         self._optimizer = build_optimizer(self.scenario, history)
 
     @property

@@ -12,6 +12,7 @@ from hypermap_lite.design import DESIGNS, Grid, InitialDesign, PriorSampling, Ra
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.evaluation import EVALUATORS
 from hypermap_lite.evaluation.batch_plan import BatchPlan
+from hypermap_lite.evaluation.earlier import earlier_evaluations
 from hypermap_lite.evaluation.evaluator import Evaluator
 from hypermap_lite.evaluation.exhaustive import Exhaustive
 from hypermap_lite.evaluation.python_function import PythonFunction
@@ -215,7 +216,7 @@ def build_optimizer(scenario: Scenario, history: History | None = None) -> Optim
     history = build_history(scenario) if history is None else history
     require_allowed(history.space)
     prior = build_prior(scenario, history.space)
-    initial = build_initial(scenario, history.space, prior)
+    initial = build_initial(scenario, history.space, prior, history)
     if scenario.optimizer.type == "bayesian":
         return BayesianOptimizer(
             history,
@@ -252,9 +253,12 @@ def _build_search(
     return ModelFreeOptimizer(history, prior=prior, initial=initial, search=search, fitness=fitness, seed=scenario.seed)
 
 
-def build_initial(scenario: Scenario, space: SearchSpace, prior: ProductPrior) -> InitialPhase:
-    """Make the trials that come before everything else."""
-    return InitialPhase(space, prior, build_design(scenario), scenario.design.number_of_samples, scenario.seed)
+def build_initial(
+    scenario: Scenario, space: SearchSpace, prior: ProductPrior, history: History | None = None
+) -> InitialPhase:
+    """Make the trials that come before everything else; evaluations of an earlier experiment are in the history."""
+    n = scenario.design.number_of_samples
+    return InitialPhase(space, prior, build_design(scenario), n, scenario.seed, history)
 
 
 def build_plan(scenario: Scenario) -> BatchPlan:
@@ -368,7 +372,8 @@ def validate(scenario: Scenario) -> list[str]:
     ScenarioError
         For the first mistake found.
     """
-    build_optimizer(scenario)
+    optimizer = build_optimizer(scenario)
+    earlier_evaluations(scenario, optimizer.history.space)
     if scenario.evaluator.component is None:
         return []
     return list(evaluator_warnings(scenario, build_evaluator(scenario)))

@@ -17,6 +17,7 @@ from hypermap_lite import assembly
 from hypermap_lite.errors import NoValidEvaluationError, ScenarioError
 from hypermap_lite.evaluation.channel import Channel, standard_channel
 from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
+from hypermap_lite.evaluation.earlier import earlier_evaluations
 from hypermap_lite.evaluation.executor_choice import choose_executor
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import RunObserver
@@ -176,6 +177,7 @@ def run_scenario(
         samples_file=_path(scenario.output.samples_file),
         pareto_file=_path(scenario.output.pareto_file),
     )
+    earlier = _Earlier(scenario, folder)
     with ExitStack() as stack:
         if isinstance(evaluator, ClientServer) and channel is None:
             channel = stack.enter_context(standard_channel())
@@ -196,7 +198,7 @@ def run_scenario(
             observer=observer or RunObserver(),
         )
         try:
-            result = _run_in_folder(runner, scenario, retry_failed=retry_failed)
+            result = _run_in_folder(runner, scenario, earlier, retry_failed=retry_failed)
         except NoValidEvaluationError:
             _say_goodbye(executor)
             raise
@@ -205,8 +207,9 @@ def run_scenario(
     return result
 
 
-def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) -> Result:
+def _run_in_folder(runner: Runner, scenario: Scenario, earlier: _Earlier, *, retry_failed: bool) -> Result:
     with runner.folder as folder, closing(runner.executor):  # workers end before the lock is released
+        earlier.take_over()
         if retry_failed:
             folder.set_failures_aside()
         for path, text in single_points(scenario):
@@ -220,6 +223,32 @@ def _say_goodbye(executor: Executor) -> None:
     """Tell a client that the run has ended, all files being written and free."""
     if isinstance(executor, ClientExecutor):
         executor.say_goodbye()
+
+
+class _Earlier:
+    """The evaluations that a run takes over when it begins; a run that goes on has them, and needs no file any more."""
+
+    def __init__(self, scenario: Scenario, folder: RunFolder) -> None:
+        self._folder = folder
+        self._file = scenario.earlier_evaluations
+        self._evaluations: list[Evaluation] = []
+        self._error: ScenarioError | None = None
+        try:
+            self._evaluations = earlier_evaluations(scenario, folder.space)
+        except ScenarioError as error:
+            if not folder.history_path.exists():
+                raise
+            self._error = error
+
+    def take_over(self) -> None:
+        """Write them to the open folder, if it has no rows yet."""
+        if self._folder.evaluations:
+            return
+        if self._error is not None:
+            raise self._error
+        if self._evaluations:
+            self._folder.import_earlier(self._evaluations)
+            logger.info("%d evaluations of %s come first", len(self._evaluations), self._file)
 
 
 def _path(text: str | None) -> Path | None:

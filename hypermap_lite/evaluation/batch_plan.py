@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,6 +18,10 @@ class BatchPlan:
 
     first: int | None = None
     """Trials of the first batch; None: as many as in the others."""
+
+    def after(self, n: int) -> Self:
+        """Return the plan of the trials after n that are done before the run: the first batch holds so many fewer."""
+        return self if self.first is None else replace(self, first=max(self.first - n, 0))
 
     @property
     def _first(self) -> int:

@@ -71,7 +71,7 @@ class Suggestion:
 
     configuration: Configuration
     phase: str
-    """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``prior``, or that of a search."""
+    """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``prior``, or a search."""
 
     prior_weight: float | None = None
     """Exponent the user prior had in the choice; None where it had no part."""

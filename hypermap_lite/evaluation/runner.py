@@ -1,8 +1,8 @@
 """The loop: ask for a batch, evaluate it, write it down, tell the optimizer.
 
-A `BatchPlan` cuts the trials into batches, and the optimizer sees the results of a batch only when all of it is done.
-So a run that goes on after a stop asks the same questions as one that never stopped, and the number of workers does not
-matter.
+A `BatchPlan` cuts the trials into batches, counted from the first one that is not of an earlier experiment, and the
+optimizer sees the results of a batch only when all of it is done. So a run that goes on after a stop asks the same
+questions as one that never stopped, and the number of workers does not matter.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import FrontTracker, RunObserver, describe
-from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
+from hypermap_lite.evaluation.outcome import EARLIER, Evaluation, State, Suggestion
 from hypermap_lite.evaluation.seeds import replicate_seed
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.optimizers.base import Optimizer
@@ -76,7 +76,11 @@ class Runner:
     """Asked before every call; once true, running calls are waited for and no other is begun."""
 
     _plan: BatchPlan = field(init=False)
+    """Of the trials that are not of an earlier experiment."""
+
+    _n_earlier: int = field(init=False, default=0)
     _clock: Clock = field(init=False)
+    _earlier_ms: int = field(init=False, default=0)
     _front: FrontTracker = field(init=False)
     _failures: int = field(init=False, default=0)
     """Configurations without a usable result in a row, up to now."""
@@ -118,10 +122,13 @@ class Runner:
     def _restore(self) -> None:
         """Tell the optimizer the batches that are complete on disk."""
         rows = self.folder.evaluations
+        self._n_earlier = sum(row.suggestion.phase == EARLIER for row in rows)
+        self._plan = (self.plan or BatchPlan(size=self.budget.batch_size)).after(self._n_earlier)
         is_finished = len(rows) >= self.budget.evaluations
-        n_complete = len(rows) if is_finished else self._plan.n_in_whole_batches(len(rows))
-        self.optimizer.history.extend(rows[:n_complete])
+        n_complete = self._n_earlier + self._plan.n_in_whole_batches(len(rows) - self._n_earlier)
+        self.optimizer.history.extend(rows if is_finished else rows[:n_complete])
         self._clock = Clock(max((row.timestamp for row in rows), default=0))
+        self._earlier_ms = max((row.timestamp for row in rows[: self._n_earlier]), default=0)
         self._front = FrontTracker(self.folder.objectives)
         for row in rows:
             self._front.add(row)
@@ -135,7 +142,8 @@ class Runner:
     def _loop(self) -> StopReason:
         while (reason := self._reason_to_stop()) is None:
             done = len(self.optimizer.history)
-            n = min(self._plan.end_of_batch(done), self.budget.evaluations) - done
+            end = self._n_earlier + self._plan.end_of_batch(done - self._n_earlier)
+            n = min(end, self.budget.evaluations) - done
             suggestions = [self._as_recorded(s) for s in self.optimizer.ask(n)]
             if not suggestions:
                 return StopReason.EXHAUSTED
@@ -147,9 +155,14 @@ class Runner:
             return StopReason.INTERRUPTED
         if len(self.optimizer.history) >= self.budget.evaluations:
             return StopReason.BUDGET
-        if self.budget.minutes is not None and self._clock.ms >= 60_000 * self.budget.minutes:
+        if self.budget.minutes is not None and self._run_ms >= 60_000 * self.budget.minutes:
             return StopReason.TIME
         return None
+
+    @property
+    def _run_ms(self) -> int:
+        """Time spent on this run, without that of an earlier experiment [ms]."""
+        return self._clock.ms - self._earlier_ms
 
     def _as_recorded(self, suggestion: Suggestion) -> Suggestion:
         """Return the suggestion with the configuration that was evaluated before the stop, if it was another."""

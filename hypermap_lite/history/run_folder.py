@@ -66,6 +66,7 @@ class RunFolder:
         pareto_file: Path | None = None,
     ) -> None:
         self.path = Path(path).absolute()
+        self.space = space
         self.objectives = tuple(objectives)
         self.canonical = canonical
         self.function = function
@@ -138,8 +139,7 @@ class RunFolder:
     def _load(self) -> None:
         for path in (self.history_path, self.evaluations_path):
             self._drop_torn_line(path)
-        space, objectives = self._history.space, self.objectives
-        self.evaluations = read_history(self.history_path, space, objectives, self.feasible_output)
+        self.evaluations = read_history(self.history_path, self.space, self.objectives, self.feasible_output)
         records = read_records(self.evaluations_path)
         if records:
             self._calls.metrics = self._calls.metrics_in(records[0])

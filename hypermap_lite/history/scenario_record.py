@@ -37,6 +37,10 @@ The file of a prior has been read: its points count.
 """
 
 
+MAY_MOVE: Final = ("$.earlier_evaluations",)
+"""Files that have been read into the history: another path is no difference, but one where there was none is."""
+
+
 def _pattern(places: Iterable[str]) -> re.Pattern[str]:
     return re.compile("|".join(re.escape(place).replace(r"\*", r"[^.\[\]]+") for place in places))
 
@@ -154,7 +158,8 @@ def differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[tuple[
         # What is null is by default, what is false is off, and no items are none: an option that an older version did
         # not have yet
         is_new = MISSING in values and {*values} <= {MISSING, "null", "false", "[]"}
-        if not _FREE.fullmatch(place) and values[0] != values[1] and not is_new:
+        is_moved = place in MAY_MOVE and not {MISSING, "null"} & set(values)
+        if not (is_moved or is_new or _FREE.fullmatch(place) or values[0] == values[1]):
             yield place, *values
     names = [list(scenario.get("input_parameters", ())) for scenario in (old, new)]
     if names[0] != names[1] and set(names[0]) == set(names[1]):

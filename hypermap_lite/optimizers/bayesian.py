@@ -209,9 +209,13 @@ class BayesianOptimizer(Optimizer):
         )
 
     def _n_model_based(self) -> int:
-        """Return the number of model-based suggestions before this one."""
+        """Return the number of model-based suggestions before this one.
+
+        Evaluations of an earlier experiment beyond the design count as such: a run that goes on from a file weighs the
+        prior as one that never stopped.
+        """
         earlier = [*(e.suggestion for e in self.history), *self.in_flight]
-        return sum(suggestion.phase == MODEL for suggestion in earlier)
+        return self._initial.n_beyond + sum(suggestion.phase == MODEL for suggestion in earlier)
 
     def _ideal(self, posterior: Posterior, feasibility: FeasibilityPosterior, rng: Rng) -> FloatArray:
         """Return what each objective may come down to where points are probably feasible, shape (m,)."""
@@ -222,8 +226,8 @@ class BayesianOptimizer(Optimizer):
         """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
         if self._method.prior_weighting is None or self._prior.is_uniform:
             return None
-        n = 1 + self._n_model_based()
-        return self._method.prior_weighting.weight(n, max(self._budget - len(self._initial), 1))
+        n_in_all = self._budget - len(self._initial) + self._initial.n_beyond
+        return self._method.prior_weighting.weight(1 + self._n_model_based(), max(n_in_all, 1))
 
     def _feasibility(self, *, is_searching: bool) -> FeasibilityPosterior | None:
         """Return what is known of the feasibility; None if no evaluation has been infeasible.

@@ -1,13 +1,15 @@
-"""The first trials of a run: the default configuration, then the initial design."""
+"""The first trials of a run: those of earlier experiments, the default configuration, then the initial design."""
 
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import takewhile
 
 import numpy as np
 
 from hypermap_lite.design.base import InitialDesign
-from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.evaluation.outcome import EARLIER, Suggestion
+from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
@@ -18,7 +20,10 @@ COMPLETIONS = 100
 
 
 class InitialPhase:
-    """The configurations that are tried before there is a model; a function of the scenario alone.
+    """The configurations that are tried before there is a model; a function of the scenario and the earlier rows.
+
+    Evaluations of an earlier experiment, which come first in the history, count towards the design: so many fewer
+    points are drawn, none of them a repetition.
 
     Parameters
     ----------
@@ -27,17 +32,29 @@ class InitialPhase:
     design
         Chooses the points.
     n
-        How many, the default configuration included.
+        How many, the default configuration and earlier evaluations included.
     seed
         Of the scenario.
+    history
+        Of the run; its first rows may be those of an earlier experiment.
     """
 
-    def __init__(self, space: SearchSpace, prior: ProductPrior, design: InitialDesign, n: int, seed: int) -> None:
+    def __init__(
+        self,
+        space: SearchSpace,
+        prior: ProductPrior,
+        design: InitialDesign,
+        n: int,
+        seed: int,
+        history: History | None = None,
+    ) -> None:
         self._space = space
         self._prior = prior
         self._design = design
         self._n = n
         self._seed = seed
+        self._history = history
+        self._drawn: tuple[int, list[Configuration]] | None = None
 
     @cached_property
     def default(self) -> Configuration | None:
@@ -53,19 +70,48 @@ class InitialPhase:
                     return completed
         return None
 
-    @cached_property
+    @property
+    def n_earlier(self) -> int:
+        """Number of evaluations of an earlier experiment."""
+        return len(self._earlier())
+
+    @property
+    def n_beyond(self) -> int:
+        """Number of these beyond the design: they stand for suggestions by the model."""
+        return max(self.n_earlier - self._n, 0)
+
+    def _earlier(self) -> list[Configuration]:
+        rows = takewhile(lambda e: e.suggestion.phase == EARLIER, self._history or ())
+        return [evaluation.configuration for evaluation in rows]
+
+    @property
     def configurations(self) -> list[Configuration]:
         """The default, if there is one, and the points of the design; one fewer where it holds the default too."""
+        earlier = self._earlier()
+        if self._drawn is None or self._drawn[0] != len(earlier):
+            self._drawn = len(earlier), self._draw(earlier)
+        return self._drawn[1]
+
+    def _draw(self, earlier: list[Configuration]) -> list[Configuration]:
         space, rng = self._space, generator(self._seed, Stream.DESIGN)
-        X = space.encode([] if self.default is None else [self.default])[: self._n]
-        if len(X) < self._n:
-            X = np.vstack([X, self._design.points(space, self._prior, self._n - len(X), rng)])
-        return space.decode(X[space.unseen(X, ())])
+        taken = space.keys(space.encode(earlier))
+        n = max(self._n - len(earlier), 0)
+        X = space.encode([] if self.default is None else [self.default])
+        X = X[space.unseen(X, taken)][:n]
+        if len(X) < n:
+            X = np.vstack([X, self._design.points(space, self._prior, n - len(X), rng)])
+        X = X[space.unseen(X, taken)]
+        if earlier and len(X) < n:  # some points are among the earlier ones, so that others take their place
+            X = np.vstack([X, self._design.points(space, self._prior, n + len(earlier), rng)])
+            X = X[space.unseen(X, taken)][:n]
+        return space.decode(X)
 
     def __len__(self) -> int:
-        return len(self.configurations)
+        """Return the trial at which the initial phase ends: earlier evaluations and points of the design."""
+        return self.n_earlier + len(self.configurations)
 
     def suggestion(self, trial: int) -> Suggestion:
-        """Return the suggestion of one of the first trials."""
-        phase = "default" if self.default is not None and trial == 0 else "design"
-        return Suggestion(trial=trial, configuration=self.configurations[trial], phase=phase)
+        """Return the suggestion of one of the first trials that are not those of an earlier experiment."""
+        configuration = self.configurations[trial - self.n_earlier]
+        is_default = trial == self.n_earlier and configuration == self.default
+        return Suggestion(trial=trial, configuration=configuration, phase="default" if is_default else "design")

@@ -22,12 +22,17 @@ def summarize(scenario: Scenario) -> str:
         "priors": [line for prior in scenario.joint_priors for line in _joint_prior(prior)],
         "objectives": _objectives(scenario),
         "feasibility": _feasible_output(scenario),
+        "earlier": [f"the evaluations of {scenario.earlier_evaluations} come first"] * _has_earlier(scenario),
         "method": _method(scenario),
         "budget": [_budget(scenario)],
         "evaluator": [_evaluator(scenario)],
         "output": [scenario.output.directory],
     }
     return "\n".join(f"{heading:<12}" + f"\n{INDENT}".join(lines) for heading, lines in sections.items() if lines)
+
+
+def _has_earlier(scenario: Scenario) -> bool:
+    return scenario.earlier_evaluations is not None
 
 
 def _experiment(scenario: Scenario) -> list[str]:

@@ -88,6 +88,15 @@ def test_every_difference_is_named_with_both_values(tmp_path):
     assert "--fresh" in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "n_differences"),
+    [("a.csv", "b.csv", 0), (None, "b.csv", 1), ("a.csv", None, 1), (None, None, 0)],
+)
+def test_file_of_earlier_evaluations_may_move_but_not_come_or_go(old, new, n_differences):
+    found = list(differing({"earlier_evaluations": old}, {"earlier_evaluations": new}))
+    assert len(found) == n_differences
+
+
 def test_whole_numbers_are_equal_however_written():
     assert list(differing({"a": 1.0, "b": [2.0, {"c": 3.0}]}, {"a": 1, "b": [2, {"c": 3}]})) == []
 

@@ -3,6 +3,9 @@
 import pytest
 
 from hypermap_lite.design import DESIGNS, Grid, PriorSampling, RandomSampling, Sobol
+from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
+from hypermap_lite.history.history import History
+from hypermap_lite.objectives import Objective
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.priors import AsJoint, GaussianPrior, ProductPrior
 from hypermap_lite.space import IntegerParameter, RealParameter, SearchSpace
@@ -64,3 +67,19 @@ def test_completing_a_default_leaves_the_points_of_the_design_as_they_were() -> 
     partial = SearchSpace((RealParameter(name="a", low=0, high=1, default=0.3), bare.parameters[1]))
     phase = InitialPhase(partial, ProductPrior(2), Sobol(), 4, seed=0)
     assert phase.configurations[1:] == InitialPhase(bare, ProductPrior(2), Sobol(), 3, seed=0).configurations
+
+
+def test_design_without_earlier_rows_does_not_depend_on_the_history() -> None:
+    with_history = InitialPhase(LINE, ProductPrior(1), Sobol(), 6, seed=7, history=History(LINE, [Objective(name="f")]))
+    assert with_history.configurations == InitialPhase(LINE, ProductPrior(1), Sobol(), 6, seed=7).configurations
+    assert (with_history.n_earlier, with_history.n_beyond) == (0, 0)
+
+
+@pytest.mark.parametrize(("n_earlier", "n_own", "n_beyond"), [(2, 4, 0), (6, 0, 0), (8, 0, 2)])
+def test_earlier_rows_count_towards_the_design(n_earlier: int, n_own: int, n_beyond: int) -> None:
+    history = History(LINE, [Objective(name="f")])
+    for trial in range(n_earlier):
+        suggestion = Suggestion(trial=trial, configuration={"x": trial / 10}, phase="earlier")
+        history.append(Evaluation(suggestion=suggestion, state=State.COMPLETED, values={"f": 0.0}))
+    phase = InitialPhase(LINE, ProductPrior(1), Sobol(), 6, seed=7, history=history)
+    assert (len(phase.configurations), len(phase), phase.n_beyond) == (n_own, n_earlier + n_own, n_beyond)
