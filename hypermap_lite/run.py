@@ -6,7 +6,7 @@ import json
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hypermap_lite import assembly
-from hypermap_lite.errors import NoValidEvaluationError, ScenarioError
+from hypermap_lite.errors import NoValidEvaluationError, ScenarioError, UsageError
 from hypermap_lite.evaluation.channel import Channel, standard_channel
 from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
 from hypermap_lite.evaluation.earlier import earlier_evaluations
@@ -22,9 +22,11 @@ from hypermap_lite.evaluation.executor_choice import choose_executor
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import RunObserver
 from hypermap_lite.evaluation.runner import Runner, StopReason
+from hypermap_lite.history.history import History
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.objectives import Objective, reference_point_of, values_of
 from hypermap_lite.pareto import hypervolume, infer_reference_point
+from hypermap_lite.reports import ParameterImportance, PosteriorBest, parameter_importance, posterior_best
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.lint import single_points
 from hypermap_lite.scenario.model import Scenario
@@ -65,6 +67,11 @@ class Result:
 
     run_folder: Path
     stop_reason: StopReason
+    parameter_importance: ParameterImportance | None = None
+    """How much each parameter matters, if the scenario asks for it and there are enough evaluations."""
+
+    posterior_best: PosteriorBest | None = None
+    """What is best by the surrogate, likewise."""
 
     def to_frame(self) -> pd.DataFrame:
         """Return ``history.csv`` as a data frame: a row per configuration, every number as it was written."""
@@ -216,7 +223,25 @@ def _run_in_folder(runner: Runner, scenario: Scenario, earlier: _Earlier, *, ret
             logger.warning("%s: %s", path, text)
         for warning in assembly.evaluator_warnings(scenario, runner.evaluator):
             logger.warning("%s", warning)
-        return result_of(folder, runner.run())
+        return _with_reports(result_of(folder, runner.run()), scenario, folder)
+
+
+def _with_reports(result: Result, scenario: Scenario, folder: RunFolder) -> Result:
+    """Add the reports that the scenario asks for, and log them; one that fails is no failure of the run."""
+    if result.stop_reason is StopReason.INTERRUPTED:
+        return result
+    history = History(folder.space, folder.objectives)
+    history.extend(folder.evaluations)
+    made: dict[str, Any] = {}
+    for name, report in (("parameter_importance", parameter_importance), ("posterior_best", posterior_best)):
+        if getattr(scenario.output, name):
+            try:
+                made[name] = report(scenario, history)
+            except UsageError as error:
+                logger.warning("no %s: %s", name, error)
+            else:
+                logger.info("%s", made[name])
+    return replace(result, **made)
 
 
 def _say_goodbye(executor: Executor) -> None:

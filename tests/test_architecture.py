@@ -23,6 +23,7 @@ LAYERS = (
     ("scenario",),
     ("evaluation",),
     ("assembly", "starting"),
+    ("reports",),
     ("run", "ask_tell"),
     ("optimizer",),
     ("plotting",),

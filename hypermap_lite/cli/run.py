@@ -110,6 +110,9 @@ def _show(result: Result, scenario: Scenario, args: Namespace) -> None:
     print(f"{scenario.application_name}: {count_states(result)}; the run ended because {result.stop_reason.value}\n")
     with _only_a_note("summary"):
         _print_front(result)
+    for report in (result.parameter_importance, result.posterior_best):
+        if report is not None:
+            print(f"\n{report}")
     for name in ("history.csv", "pareto.csv"):
         print(short(result.run_folder) / name)
     if not args.no_plot:

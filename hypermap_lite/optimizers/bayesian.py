@@ -123,6 +123,10 @@ class BayesianOptimizer(Optimizer):
         self._posterior_of: tuple[int, Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
+    def posterior(self) -> Posterior:
+        """Return what the surrogate knows after the completed evaluations, of which there must be one."""
+        return self._posterior(self.history.X(), self.history.Y())
+
     def _suggest(self, trial: int) -> Suggestion | None:
         if trial < len(self._initial):
             return self._initial.suggestion(trial)

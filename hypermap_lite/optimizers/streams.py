@@ -18,6 +18,7 @@ class Stream(IntEnum):
     EXPLORATION = 3
     NEIGHBOURS = 4
     RESTART = 5
+    REPORT = 16
 
 
 def generator(seed: int, stream: Stream, *numbers: int) -> Rng:
