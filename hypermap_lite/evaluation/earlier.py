@@ -8,51 +8,28 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.evaluation.outcome import EARLIER, Evaluation, State, Suggestion
-from hypermap_lite.history.csv_format import parse_value
+from hypermap_lite.history.foreign_values import parse_foreign_value
 from hypermap_lite.objectives import Objective
+from hypermap_lite.scenario.feasibility_column import FeasibilityColumn, usual_feasibility
 from hypermap_lite.scenario.messages import enumerate_names
 from hypermap_lite.scenario.model import Scenario
 from hypermap_lite.scenario.table import Table, read_table
-from hypermap_lite.space import IntegerParameter, Parameter, RealParameter, SearchSpace
+from hypermap_lite.space import Parameter, SearchSpace
 from hypermap_lite.typing import Value
 
 PATH: Final = "$.earlier_evaluations"
-
-ROUNDING: Final = 1e-9
-"""How far beyond a bound, as a share of the range, a value may lie from rounding alone."""
 
 SHORTEST_EPOCH: Final = 1e11
 """Timestamps from here on [ms] are dates: more than three years."""
 
 SKIPPED: Final = ("failed", "timeout")
 """States of rows that bring nothing."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FeasibilityColumn:
-    """Where a file says whether a configuration is allowed."""
-
-    name: str
-    true_value: str = "true"
-    false_value: str = "false"
-
-    def is_feasible(self, text: str) -> bool | None:
-        """Return what a cell says, in upper or lower case; None if it is neither of the two texts."""
-        yes, no = self.true_value, self.false_value
-        if yes.casefold() != no.casefold():
-            yes, no, text = yes.casefold(), no.casefold(), text.casefold()
-        return {yes: True, no: False}.get(text)
-
-
-USUAL_COLUMNS: Final = (FeasibilityColumn(name="Valid"), FeasibilityColumn(name="feasible"))
-"""What counts as a feasibility column if the scenario names none."""
 
 
 def earlier_evaluations(scenario: Scenario, space: SearchSpace) -> list[Evaluation]:
@@ -68,7 +45,7 @@ def earlier_evaluations(scenario: Scenario, space: SearchSpace) -> list[Evaluati
     folders = (*scenario.folders_of(PATH), Path.cwd())
     try:
         table = _open(scenario.earlier_evaluations, folders)
-        return rows_of(table, space, scenario.objectives, _column_of(scenario.canonical.get("feasible_output")))
+        return rows_of(table, space, scenario.objectives, FeasibilityColumn.of(scenario.canonical))
     except ScenarioError as error:
         place = error if error.path == PATH else error.below(PATH)
         raise place.within(scenario.origin_of(PATH)) from None
@@ -95,7 +72,7 @@ def rows_of(
         ``history.csv``; if None, a column ``Valid`` or ``feasible`` counts if there is one.
     """
     names = [*space.names, *(o.name for o in objectives)]
-    columns = _usual(table, names) if feasibility is None else [feasibility]
+    columns = usual_feasibility(table.header, names) if feasibility is None else [feasibility]
     if feasibility is not None and "state" in table.header and feasibility.name not in table.header:
         columns = []
     _require_columns(table, [*names, *(column.name for column in columns)])
@@ -130,17 +107,6 @@ def _open(file: str, folders: Sequence[Path]) -> Table:
     if path.is_dir():
         return read_table(path / "history.csv", str(Path(file) / "history.csv"))
     return read_table(path, file)
-
-
-def _column_of(section: Mapping[str, str] | None) -> FeasibilityColumn | None:
-    if section is None:
-        return None
-    keys = ("name", "true_value", "false_value")
-    return FeasibilityColumn(**{key: section[key] for key in keys})
-
-
-def _usual(table: Table, names: Sequence[str]) -> list[FeasibilityColumn]:
-    return [column for column in USUAL_COLUMNS if column.name in table.header and column.name not in names]
 
 
 def _require_columns(table: Table, names: Sequence[str]) -> None:
@@ -200,24 +166,10 @@ def _configurations(table: Table, rows: Sequence[int], space: SearchSpace) -> li
 
 
 def _value(parameter: Parameter, text: str) -> Value | None:
-    """Return the value that a text means, also where it is written as another type (1.0) or rounded; else None."""
     try:
-        return parse_value(parameter, text)
-    except ValueError:
-        pass
-    try:
-        number = float(text)
+        return parse_foreign_value(parameter, text)
     except ValueError:
         return None
-    if isinstance(parameter, RealParameter | IntegerParameter) and math.isfinite(number):
-        slack = ROUNDING * (parameter.high - parameter.low)
-        inside = min(max(number, parameter.low), parameter.high)
-        value = round(inside) if isinstance(parameter, IntegerParameter) else float(inside)
-        is_close = abs(number - value) <= max(slack, ROUNDING if isinstance(parameter, IntegerParameter) else 0)
-        return value if is_close else None
-    levels = [level for level in getattr(parameter, "values", ()) if not isinstance(level, str)]
-    slack = ROUNDING * (max(levels) - min(levels)) if levels else 0.0
-    return next((level for level in levels if abs(number - level) <= slack), None)
 
 
 def _values(table: Table, k: int, objectives: Sequence[Objective], *, is_required: bool) -> dict[str, float]:

@@ -8,10 +8,11 @@ import pytest
 from hypermap_lite import Optimizer, optimize
 from hypermap_lite.assembly import build_optimizer, build_space
 from hypermap_lite.errors import RunFolderError, ScenarioError
-from hypermap_lite.evaluation.earlier import FeasibilityColumn, earlier_evaluations, rows_of
+from hypermap_lite.evaluation.earlier import earlier_evaluations, rows_of
 from hypermap_lite.evaluation.outcome import State
 from hypermap_lite.evaluation.runner import StopReason
 from hypermap_lite.scenario import load_scenario
+from hypermap_lite.scenario.feasibility_column import FeasibilityColumn
 from hypermap_lite.scenario.table import Table
 
 SCENARIO = {
