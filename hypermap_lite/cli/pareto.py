@@ -6,10 +6,12 @@ import argparse
 import math
 import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from hypermap_lite.cli.plot import add_reference_point_option, parse_reference_point
-from hypermap_lite.errors import RunFolderError
+from hypermap_lite.cli.samples import add_options, as_sources, meaning_of
+from hypermap_lite.errors import RunFolderError, UsageError
 
 if TYPE_CHECKING:
     from hypermap_lite.plotting.runs import Run
@@ -20,9 +22,11 @@ EPILOG: Final = """\
 examples:
   python -m hypermap_lite pareto outputs/branin
   python -m hypermap_lite pareto outputs/branin --csv > front.csv
+  python -m hypermap_lite pareto branin_output_samples.csv --objectives Value,Energy
 
 The front is also written to pareto.csv in the run folder, if that can be written. As CSV it goes to stdout and the
-hypervolume to stderr.
+hypervolume to stderr. A CSV file without a run folder needs --scenario or --objectives; its front goes to a file beside
+it that is called pareto where it is called samples.
 """
 
 
@@ -35,7 +39,9 @@ def add_parser(subparsers: Subparsers) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("run", metavar="RUN", help="run folder or its history.csv")
+    parser.add_argument("run", metavar="RUN", help="run folder or its history.csv, or a samples file")
+    add_options(parser)
+    parser.add_argument("--output", "-o", metavar="FILE", help="where the front is written, instead")
     add_reference_point_option(parser)
     parser.add_argument("--csv", action="store_true", help="print CSV (the default unless stdout is a terminal)")
     parser.set_defaults(execute=execute)
@@ -46,7 +52,10 @@ def execute(args: argparse.Namespace) -> int:
     from hypermap_lite.history.files import write_atomically
     from hypermap_lite.plotting.runs import load_runs
 
-    (run,) = load_runs([args.run])
+    sources, _ = as_sources([Path(args.run)], None, meaning_of(args))
+    if len(sources) != 1:
+        raise UsageError(f"{args.run}: holds {len(sources)} CSV files; name one of them")
+    (run,) = load_runs(sources)
     summary = describe_front(run, parse_reference_point(args.reference_point))
     text = front_as_csv(run)
     if args.csv or not sys.stdout.isatty():
@@ -56,10 +65,19 @@ def execute(args: argparse.Namespace) -> int:
         print(front_as_table(run))
         print(summary)
     try:
-        write_atomically(run.folder / "pareto.csv", text)
+        write_atomically(Path(args.output) if args.output is not None else front_file(run), text)
     except RunFolderError as error:
         print(f"note: {str(error).splitlines()[0]}", file=sys.stderr)
     return 0
+
+
+def front_file(run: Run) -> Path:
+    """Return where the front of a run is written; never the file it was read from."""
+    if run.samples is None:
+        return run.folder / "pareto.csv"
+    stem = run.samples.stem
+    renamed = stem[: -len("samples")] + "pareto" if stem.endswith("samples") else f"{stem}_pareto"
+    return run.samples.with_name(f"{renamed}.csv")
 
 
 def front_as_csv(run: Run) -> str:
@@ -67,7 +85,7 @@ def front_as_csv(run: Run) -> str:
     from hypermap_lite.history.csv_format import format_record
 
     rows = _front_rows(run)
-    return "".join(format_record(fields) for fields in [run.columns, *([*row.values()] for row in rows)])
+    return "".join(format_record(fields) for fields in [run.columns, *([row[c] for c in run.columns] for row in rows)])
 
 
 def front_as_table(run: Run) -> str:
@@ -76,12 +94,17 @@ def front_as_table(run: Run) -> str:
     Rows are in the order of the first objective, best first; numbers have four significant digits.
     """
     names = [objective.name for objective in run.objectives]
-    parameters = list(run.columns[: run.columns.index(names[0])])
+    parameters = list(run.scenario.get("input_parameters") or run.columns[: run.columns.index(names[0])])
     first = run.objectives[0]
     rows = sorted(_front_rows(run), key=lambda row: first.sign * float(row[first.name]))
-    header = ["trial", *(f"{o.name} ({o.goal.value})" for o in run.objectives), *parameters]
+    counter = ["trial"] if "trial" in run.columns else []
+    header = [*counter, *(f"{o.name} ({o.goal.value})" for o in run.objectives), *parameters]
     lines = [
-        [row.get("trial", ""), *(_with_error(row, name) for name in names), *(_shorten(row[p]) for p in parameters)]
+        [
+            *(row[c] for c in counter),
+            *(_with_error(row, name) for name in names),
+            *(_shorten(row[p]) for p in parameters),
+        ]
         for row in rows
     ]
     return align([header, *lines])

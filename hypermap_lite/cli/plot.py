@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from hypermap_lite.cli.samples import add_options, as_sources, meaning_of
 from hypermap_lite.errors import UsageError
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ KINDS: Final = {
     "attainment": "for two objectives, the median front of repetitions, with a band from 25 % to 75 % of them",
     "parameters": "the front in parallel coordinates, an axis per parameter and per objective",
     "prior": "the prior on two parameters; RUN may be a scenario file",
+    "regret": "for one objective, the distance of the best so far from the optimum; mean and standard-error band",
+    "hypervolume_gap": "share of the hypervolume of all runs together that is missing; mean and standard-error band",
 }
 """What `hypermap_lite.plotting.KINDS` draws, in the words of the help."""
 
@@ -34,6 +37,8 @@ examples:
   python -m hypermap_lite plot hypervolume "operator prior=outputs/op_*" "no prior=outputs/no_*" --output figure.pdf
   python -m hypermap_lite plot attainment outputs/studies/peg_insertion
   python -m hypermap_lite plot prior example_scenarios/robot/peg_insertion/operator_prior.json --parameters Force,Radius
+  python -m hypermap_lite plot pareto forest_output_samples.csv gp_output_samples.csv --objectives Value,Energy
+  python -m hypermap_lite plot regret "forest=rf/*.csv" "process=gp/*.csv" --scenario branin.json --minimum 0.3979 --log
 
 Each picture becomes a PNG and a PDF (or the one that --output names), in the folder of the run or study if there is
 one and in the working directory if there are several. The files written are listed on stdout.
@@ -46,7 +51,7 @@ def add_parser(subparsers: Subparsers) -> None:
         "plot",
         help="draw pictures of one or several runs",
         description="Draw a picture of one or several runs from their history.csv.",
-        epilog=EPILOG.format(kinds="\n".join(f"  {name:<13}{text}" for name, text in KINDS.items())),
+        epilog=EPILOG.format(kinds="\n".join(f"  {name:<17}{text}" for name, text in KINDS.items())),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("kind", metavar="KIND", choices=list(KINDS), help=f"one of {', '.join(KINDS)}")
@@ -55,7 +60,7 @@ def add_parser(subparsers: Subparsers) -> None:
         metavar="RUN",
         nargs="+",
         help="run folder or its history.csv, or the folder of a study; 'LABEL=PATTERN' makes all folders that match "
-        "repetitions of one label",
+        "repetitions of one label; with --scenario or --objectives, also a CSV file or a folder of them",
     )
     parser.add_argument("--labels", metavar="A,B", help="names for the legend, one per RUN, separated by commas")
     parser.add_argument("--output", "-o", metavar="FILE", help="FILE.png, FILE.pdf, or FILE without ending for both")
@@ -66,6 +71,18 @@ def add_parser(subparsers: Subparsers) -> None:
         metavar="A,B",
         help="parameters to show, separated by commas: two for prior (default: the first that have one), any for "
         "parameters (default: all)",
+    )
+    add_options(parser)
+    parser.add_argument(
+        "--optimum",
+        "--minimum",
+        type=float,
+        metavar="FLOAT",
+        help="best possible value, for regret (default: the best of all runs)",
+    )
+    parser.add_argument("--log", action="store_true", help="logarithmic axis, for regret and hypervolume_gap")
+    parser.add_argument(
+        "--against", choices=["evaluations", "time"], help="horizontal axis of hypervolume_gap (default: evaluations)"
     )
     parser.add_argument(
         "--csv", action="store_true", help="write the numbers drawn beside the picture, as FILE_data.csv"
@@ -90,8 +107,11 @@ def execute(args: argparse.Namespace) -> int:
 
     names = [name.strip() for name in args.parameters.split(",")] if args.parameters is not None else None
     folders, labels = expand_runs(args.runs, args.labels.split(",") if args.labels is not None else None)
-    files = plot_function(args.kind, parameters=names)(
-        folders,
+    given = {"optimum": args.optimum, "log": args.log or None, "against": args.against}
+    options = {name: value for name, value in given.items() if value is not None}
+    sources, labels = as_sources(folders, labels, meaning_of(args))
+    files = plot_function(args.kind, parameters=names, options=options)(
+        sources,
         args.output or _beside_study(args.runs, args.kind),
         labels=labels,
         title=args.title,

@@ -9,9 +9,10 @@ import importlib
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Final, Protocol, cast
+from typing import Any, Final, Protocol, cast
 
 from hypermap_lite.errors import UsageError, nearest
+from hypermap_lite.plotting.runs import Source
 
 
 class PlotFunction(Protocol):
@@ -19,7 +20,7 @@ class PlotFunction(Protocol):
 
     def __call__(
         self,
-        folders: Sequence[str | Path],
+        folders: Sequence[Source],
         output: str | Path | None = None,
         *,
         labels: Sequence[str] | None = None,
@@ -32,7 +33,7 @@ class PlotFunction(Protocol):
         Parameters
         ----------
         folders
-            Run folders, or the ``history.csv`` in them.
+            Run folders, the ``history.csv`` in them, or samples files.
         output
             Where to write: a name that ends in ``.png`` or ``.pdf``, or one without ending for both. By default the
             kind's name, in the run folder if there is one run and in the working directory if there are several.
@@ -62,6 +63,8 @@ KINDS: Final[Mapping[str, str]] = {
     "attainment": "hypermap_lite.plotting.attainment:plot_attainment",
     "parameters": "hypermap_lite.plotting.parameters:plot_parameters",
     "prior": "hypermap_lite.plotting.prior:plot_prior",
+    "regret": "hypermap_lite.plotting.regret:plot_regret",
+    "hypervolume_gap": "hypermap_lite.plotting.hypervolume_gap:plot_hypervolume_gap",
 }
 """Kinds of pictures and the function, as ``module:name``, that draws each."""
 
@@ -69,7 +72,17 @@ KINDS_OF_PARAMETERS: Final = ("parameters", "prior")
 """Kinds that show parameters; their functions take the names of those to show as one more keyword, ``parameters``."""
 
 
-def plot_function(kind: str, *, parameters: Sequence[str] | None = None) -> PlotFunction:
+OPTIONS: Final[Mapping[str, Sequence[str]]] = {
+    "optimum": ("regret",),
+    "log": ("regret", "hypervolume_gap"),
+    "against": ("hypervolume_gap",),
+}
+"""Further keywords of some kinds' functions."""
+
+
+def plot_function(
+    kind: str, *, parameters: Sequence[str] | None = None, options: Mapping[str, Any] | None = None
+) -> PlotFunction:
     """Return the function that draws a kind of picture.
 
     Parameters
@@ -78,16 +91,23 @@ def plot_function(kind: str, *, parameters: Sequence[str] | None = None) -> Plot
         One of `KINDS`.
     parameters
         Names of the parameters it shall show, for those of `KINDS_OF_PARAMETERS`; by default the kind chooses.
+    options
+        Values of those of `OPTIONS` that the kind has.
 
     Raises
     ------
     UsageError
-        If there is no such kind, it shows no parameters, or Matplotlib is not installed.
+        If there is no such kind, it shows no parameters, lacks an option, or Matplotlib is not installed.
     """
     if kind not in KINDS:
         raise UsageError(f"unknown kind of picture '{kind}'; known: {', '.join(KINDS)}. {nearest(kind, KINDS)}".strip())
     if parameters is not None and kind not in KINDS_OF_PARAMETERS:
         raise UsageError(f"`plot {kind}` shows no parameters to choose from; {', '.join(KINDS_OF_PARAMETERS)} do")
+    keywords: dict[str, Any] = {} if parameters is None else {"parameters": parameters}
+    for option, value in (options or {}).items():
+        if kind not in OPTIONS[option]:
+            raise UsageError(f"`plot {kind}` has no option '{option}'; {', '.join(OPTIONS[option])} do")
+        keywords[option] = value
     module, _, name = KINDS[kind].partition(":")
     try:
         function = getattr(importlib.import_module(module), name)
@@ -95,4 +115,4 @@ def plot_function(kind: str, *, parameters: Sequence[str] | None = None) -> Plot
         if (error.name or "").partition(".")[0] != "matplotlib":
             raise
         raise UsageError("pictures need Matplotlib: pip install 'hypermap-lite[plot]'") from error
-    return cast(PlotFunction, function if parameters is None else partial(function, parameters=parameters))
+    return cast(PlotFunction, partial(function, **keywords) if keywords else function)

@@ -16,7 +16,7 @@ from hypermap_lite.pareto import attainment_surface
 from hypermap_lite.plotting import style
 from hypermap_lite.plotting.pareto import staircase
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
-from hypermap_lite.plotting.runs import Run, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
 from hypermap_lite.plotting.view import View, robust_view
 from hypermap_lite.typing import FloatArray
 
@@ -28,7 +28,7 @@ LINES: Final = ("-", (0.0, (4.0, 1.2)), (0.0, (1.5, 1.0)), (0.0, (5.0, 1.2, 1.2,
 
 
 def plot_attainment(
-    folders: Sequence[str | Path],
+    folders: Sequence[Source],
     output: str | Path | None = None,
     *,
     labels: Sequence[str] | None = None,

@@ -13,14 +13,14 @@ from hypermap_lite.objectives import to_minimization
 from hypermap_lite.pareto import hypervolume_trace
 from hypermap_lite.plotting import style, traces
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
-from hypermap_lite.plotting.runs import Run, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
 from hypermap_lite.typing import FloatArray
 
 logger = logging.getLogger(__name__)
 
 
 def plot_hypervolume(
-    folders: Sequence[str | Path],
+    folders: Sequence[Source],
     output: str | Path | None = None,
     *,
     labels: Sequence[str] | None = None,
@@ -57,24 +57,10 @@ def plot_hypervolume(
         style.add_legend(figure, traces.trace_legend(runs, single="hypervolume"))
         style.set_title(figure, title, runs)
         files = style.save(figure, target)
-    return [*files, style.save_data(*_numbers_behind(runs, volumes), target)] if data else files
+    return [*files, style.save_data(*traces.numbers_behind(runs, volumes, "hypervolume"), target)] if data else files
 
 
 def run_traces(runs: Sequence[Run], reference: ReferencePoint) -> dict[str, list[FloatArray]]:
     """Return the hypervolume after each evaluation of each run, shape (n,), under the runs' labels."""
     corner = to_minimization(runs[0].objectives, reference.values)
     return {label: [hypervolume_trace(run.Y, corner) for run in group] for label, group in by_label(runs).items()}
-
-
-def _numbers_behind(
-    runs: Sequence[Run], volumes: Mapping[str, Sequence[FloatArray]]
-) -> tuple[list[str], list[list[object]]]:
-    """Return the header and rows of the data of the picture: one row per run and evaluation."""
-    rows: list[list[object]] = []
-    for label, group in by_label(runs).items():
-        mean, error = traces.mean_and_error(volumes[label])
-        for run, trace in zip(group, volumes[label], strict=True):
-            for i, volume in enumerate(trace):
-                summary = [float(mean[i]), float(error[i])] if i < len(mean) else [np.nan, np.nan]
-                rows.append([label, str(run.folder), i + 1, float(volume), *summary])
-    return ["label", "run", "evaluation", "hypervolume", "mean", "standard_error"], rows

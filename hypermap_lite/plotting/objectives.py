@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from hypermap_lite.objectives import Goal
 from hypermap_lite.plotting import style, traces
-from hypermap_lite.plotting.runs import Run, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
 from hypermap_lite.typing import FloatArray
 
 STATE_MARKS: Final[Mapping[str, str]] = {"failed": "x", "timeout": "1", "infeasible": "_"}
@@ -20,7 +20,7 @@ STATE_MARKS: Final[Mapping[str, str]] = {"failed": "x", "timeout": "1", "infeasi
 
 
 def plot_objectives(
-    folders: Sequence[str | Path],
+    folders: Sequence[Source],
     output: str | Path | None = None,
     *,
     labels: Sequence[str] | None = None,
@@ -144,5 +144,5 @@ def _numbers_behind(runs: Sequence[Run]) -> tuple[list[str], list[list[object]]]
     for run in runs:
         numbers = np.hstack([run.values, run.standard_errors, running_best(run)])
         for i, (row, line) in enumerate(zip(run.rows, numbers, strict=True)):
-            rows.append([run.label, str(run.folder), i + 1, row.get("phase", ""), row["state"], *map(float, line)])
+            rows.append([run.label, str(run.place), i + 1, row.get("phase", ""), row["state"], *map(float, line)])
     return header, rows

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from hypermap_lite.assembly import build_space
 from hypermap_lite.errors import RunFolderError, UsageError, nearest
-from hypermap_lite.history.csv_format import parse_value
+from hypermap_lite.history.foreign_values import parse_foreign_value
 from hypermap_lite.plotting.reference import number
 from hypermap_lite.plotting.runs import Run
 from hypermap_lite.scenario import load_scenario
@@ -29,8 +29,14 @@ def space_of(run: Run) -> SearchSpace:
     ------
     ScenarioError
         If its ``scenario.json`` is no scenario.
+    UsageError
+        If nobody said what the parameters of a samples file are.
     """
-    return build_space(load_scenario(run.folder / "scenario.json"))
+    if run.samples is None:
+        return build_space(load_scenario(run.folder / "scenario.json"))
+    if "input_parameters" not in run.scenario:
+        raise UsageError(f"{run.samples}: its parameters are not known; give the scenario with --scenario")
+    return build_space(load_scenario(run.scenario))
 
 
 def chosen_axes(names: Sequence[str], space: SearchSpace) -> list[int]:
@@ -58,11 +64,11 @@ def values_of(run: Run, parameter: Parameter) -> list[Value]:
     RunFolderError
         If the history holds no such values.
     """
-    file = run.folder / "history.csv"
+    file = run.samples or run.folder / "history.csv"
     if parameter.name not in run.columns:
         raise RunFolderError(f"{file}: no column '{parameter.name}'; found {', '.join(run.columns)}")
     try:
-        return [parse_value(parameter, row[parameter.name]) for row in run.rows]
+        return [parse_foreign_value(parameter, row[parameter.name]) for row in run.rows]
     except ValueError as error:
         raise RunFolderError(f"{file}: {error}") from error
 

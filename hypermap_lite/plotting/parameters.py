@@ -29,7 +29,7 @@ from hypermap_lite.plotting.parameter_axes import (
     ticks,
     values_of,
 )
-from hypermap_lite.plotting.runs import Run, by_label, legend_labels, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, legend_labels, load_runs, require_drawable
 from hypermap_lite.space import CategoricalParameter, Parameter
 from hypermap_lite.typing import FloatArray, Value
 
@@ -83,7 +83,7 @@ class FrontRows:
 
 
 def plot_parameters(
-    folders: Sequence[str | Path],
+    folders: Sequence[Source],
     output: str | Path | None = None,
     *,
     labels: Sequence[str] | None = None,
@@ -171,7 +171,7 @@ def _front_rows(runs: Sequence[Run], parameters: Sequence[Parameter]) -> FrontRo
     for label, group in by_label(runs).items():
         for run in group:
             chosen = np.flatnonzero(run.is_front)
-            heads += [(label, str(run.folder), int(i) + 1) for i in chosen]
+            heads += [(label, str(run.place), int(i) + 1) for i in chosen]
             for column, parameter in zip(values, parameters, strict=True):
                 of_run = values_of(run, parameter)
                 column.extend(of_run[i] for i in chosen)

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from hypermap_lite.errors import UsageError
 from hypermap_lite.plotting import style
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
-from hypermap_lite.plotting.runs import Run, by_label, legend_labels, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, legend_labels, load_runs, require_drawable
 from hypermap_lite.plotting.view import View, robust_view
 from hypermap_lite.typing import BoolArray, FloatArray
 
@@ -36,7 +36,7 @@ class Detail(Enum):
 
 
 def plot_pareto(
-    folders: Sequence[str | Path],
+    folders: Sequence[Source],
     output: str | Path | None = None,
     *,
     labels: Sequence[str] | None = None,
@@ -253,7 +253,7 @@ def _numbers_behind(runs: Sequence[Run]) -> tuple[list[str], list[list[object]]]
     names = [o.name for o in runs[0].objectives]
     header = ["label", "run", "evaluation", "phase", "on_front", *names, *(f"{name}_sem" for name in names)]
     rows = [
-        [run.label, str(run.folder), i + 1, run.rows[i].get("phase", ""), bool(front[i]), *map(float, numbers[i])]
+        [run.label, str(run.place), i + 1, run.rows[i].get("phase", ""), bool(front[i]), *map(float, numbers[i])]
         for run in runs
         for front, numbers in [(run.is_front, np.hstack([run.values, run.standard_errors]))]
         for i in np.flatnonzero(run.is_completed)

@@ -19,7 +19,7 @@ from hypermap_lite.assembly import build_prior, build_space
 from hypermap_lite.errors import RunFolderError, UsageError
 from hypermap_lite.plotting import style
 from hypermap_lite.plotting.parameter_axes import chosen_axes, name_with_scale, ticks, values_of
-from hypermap_lite.plotting.runs import load_run
+from hypermap_lite.plotting.runs import SamplesFile, Source, load_run
 from hypermap_lite.priors import JointDensity, ProductPrior
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.model import Scenario
@@ -80,7 +80,7 @@ class PriorPoints:
 
 
 def plot_prior(
-    folders: Sequence[str | Path],
+    folders: Sequence[Source],
     output: str | Path | None = None,
     *,
     labels: Sequence[str] | None = None,
@@ -99,7 +99,10 @@ def plot_prior(
     """
     if len(folders) != 1:
         raise UsageError(f"`plot prior` draws one prior, and {len(folders)} runs or scenarios are given")
-    file, folder = _scenario_file(Path(folders[0]))
+    source = folders[0]
+    if isinstance(source, SamplesFile):
+        raise UsageError(f"{source.path}: `plot prior` draws the prior of a run folder or a scenario file")
+    file, folder = _scenario_file(Path(source))
     scenario = load_scenario(file)
     space = build_space(scenario)
     prior = build_prior(scenario, space)

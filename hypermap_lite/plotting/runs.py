@@ -5,23 +5,22 @@ Light on purpose: ``history.csv`` and ``scenario.json`` are enough, no part of t
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from hypermap_lite.errors import RunFolderError, UsageError
-from hypermap_lite.history.csv_format import read_records
-from hypermap_lite.objectives import Goal, Objective, to_minimization
+from hypermap_lite.objectives import Objective, to_minimization
 from hypermap_lite.pareto import non_dominated
+from hypermap_lite.plotting.files import numbers_of, objectives_of, read_rows, read_samples, read_scenario
 from hypermap_lite.typing import BoolArray, FloatArray
 
-DESIGN_PHASES: Final = ("default", "design")
-"""Phases of ``history.csv`` that come before there is a model."""
+DESIGN_PHASES: Final = ("earlier", "default", "design")
+"""Phases of ``history.csv`` that come before there is a model: evaluations of an earlier experiment count as design."""
 
 LARGEST_DRAWN: Final = 1e300
 """Size of the largest values in a picture; its axes are longer than the range of the values."""
@@ -50,6 +49,14 @@ class Run:
 
     standard_errors: FloatArray
     """Standard errors of the values, shape (n, m); NaN with fewer than two replicates and unless completed."""
+
+    samples: Path | None = None
+    """The samples file it was read from, if it has no run folder."""
+
+    @property
+    def place(self) -> Path:
+        """What tells it from other runs: its folder or samples file."""
+        return self.folder if self.samples is None else self.samples
 
     @property
     def name(self) -> str:
@@ -87,13 +94,26 @@ class Run:
         return non_dominated(self.Y)
 
 
-def load_run(source: str | Path, *, label: str = "") -> Run:
-    """Read a run folder.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SamplesFile:
+    """A CSV file without a run folder, such as HyperMapper writes, and what its columns mean."""
+
+    path: Path
+    scenario: Mapping[str, Any]
+    """A canonical scenario, or no more of one than its ``objectives``."""
+
+
+Source: TypeAlias = str | Path | SamplesFile
+"""A run folder, the ``history.csv`` in it, or a samples file."""
+
+
+def load_run(source: Source, *, label: str = "") -> Run:
+    """Read a run folder, or a samples file.
 
     Parameters
     ----------
     source
-        The run folder, or the ``history.csv`` in it.
+        The run folder, the ``history.csv`` in it, or a samples file.
     label
         Name in legends; the folder's name if empty.
 
@@ -107,15 +127,17 @@ def load_run(source: str | Path, *, label: str = "") -> Run:
     RunFolderError
         If a file is missing, cannot be read, or does not fit the scenario.
     """
+    if isinstance(source, SamplesFile):
+        return _load_samples(source, label)
     path = Path(source)
     history_file = path if path.suffix == ".csv" and not path.is_dir() else path / "history.csv"
     folder = history_file.parent
-    scenario = _read_scenario(folder / "scenario.json")
-    objectives = _objectives_of(scenario, folder / "scenario.json")
-    columns, rows = _read_rows(history_file, required=["state", *(o.name for o in objectives)])
+    scenario = read_scenario(folder / "scenario.json")
+    objectives = objectives_of(scenario, folder / "scenario.json")
+    columns, rows = read_rows(history_file, required=["state", *(o.name for o in objectives)])
     names = [o.name for o in objectives]
-    values = _numbers(rows, names, history_file)
-    errors = _numbers(rows, [f"{name}_sem" for name in names], history_file)
+    values = numbers_of(rows, names, history_file)
+    errors = numbers_of(rows, [f"{name}_sem" for name in names], history_file)
     for numbers in (values, errors):
         numbers[[row["state"] != "completed" for row in rows]] = np.nan
     return Run(
@@ -130,13 +152,34 @@ def load_run(source: str | Path, *, label: str = "") -> Run:
     )
 
 
-def load_runs(sources: Sequence[str | Path], labels: Sequence[str] | None = None) -> list[Run]:
+def _load_samples(source: SamplesFile, label: str) -> Run:
+    """Read a samples file as the history of a run."""
+    objectives = objectives_of(source.scenario, source.path)
+    columns, rows = read_samples(source.path, source.scenario, objectives)
+    names = [o.name for o in objectives]
+    values = np.full((len(rows), len(names)), np.nan)
+    is_completed = [row["state"] == "completed" for row in rows]
+    values[is_completed] = numbers_of([row for row in rows if row["state"] == "completed"], names, source.path)
+    return Run(
+        folder=source.path.parent,
+        samples=source.path,
+        label=label or source.path.stem,
+        scenario=source.scenario,
+        objectives=objectives,
+        columns=columns,
+        rows=rows,
+        values=values,
+        standard_errors=np.full(values.shape, np.nan),
+    )
+
+
+def load_runs(sources: Sequence[Source], labels: Sequence[str] | None = None) -> list[Run]:
     """Read the runs of one picture and check that they can share it.
 
     Parameters
     ----------
     sources
-        Run folders, or the ``history.csv`` in them; at least one.
+        Run folders, the ``history.csv`` in them, or samples files; at least one.
     labels
         One name per run; equal names mark repetitions. By default the shortest endings of the folders' paths
         that tell them apart.
@@ -158,7 +201,7 @@ def load_runs(sources: Sequence[str | Path], labels: Sequence[str] | None = None
     if labels is not None and len(labels) != len(sources):
         raise UsageError(f"{len(labels)} labels for {len(sources)} runs: give one label per run, in the same order")
     runs = [load_run(source) for source in sources]
-    names = labels if labels is not None else _distinct_names([run.folder for run in runs])
+    names = labels if labels is not None else _distinct_names([run.place for run in runs])
     for run in runs:
         _require_completed(run)
         _require_same_objectives(runs[0], run)
@@ -170,7 +213,7 @@ def require_drawable(runs: Sequence[Run], reference_point: FloatArray | None = N
     for run in runs:
         largest = float(np.nanmax(np.abs(run.values)))
         if largest > LARGEST_DRAWN:
-            raise UsageError(f"{run.folder}: objective values up to {largest:g} in size cannot be drawn")
+            raise UsageError(f"{run.place}: objective values up to {largest:g} in size cannot be drawn")
     if reference_point is not None and np.abs(reference_point).max() > LARGEST_DRAWN:
         raise UsageError(f"a reference point of {np.abs(reference_point).max():g} in size cannot be drawn")
 
@@ -189,63 +232,11 @@ def legend_labels(runs: Sequence[Run]) -> list[str]:
     return [f"{label} ({len(group)} runs)" if len(group) > 1 else label for label, group in groups]
 
 
-def _read_scenario(file: Path) -> Mapping[str, Any]:
-    """Return the canonical scenario of a run."""
-    try:
-        scenario = json.loads(file.read_text(encoding="utf-8"))
-    except (FileNotFoundError, NotADirectoryError):
-        where = "no such folder" if not file.parent.exists() else f"no {file.name} in it"
-        raise RunFolderError(f"{file.parent}: not a run folder ({where}). Give the folder a run wrote") from None
-    except ValueError as error:
-        raise RunFolderError(f"{file}: not valid JSON ({error})") from error
-    if not isinstance(scenario, dict):
-        raise RunFolderError(f"{file}: expected a JSON object, got {type(scenario).__name__}")
-    return scenario
-
-
-def _objectives_of(scenario: Mapping[str, Any], file: Path) -> tuple[Objective, ...]:
-    """Return the objectives a canonical scenario names."""
-    try:
-        return tuple(
-            Objective(name=o["name"], goal=Goal(o.get("goal", "minimize")), reference_point=o.get("reference_point"))
-            for o in scenario["objectives"]
-        )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise RunFolderError(f"{file}: its objectives cannot be read ({error!r})") from error
-
-
-def _read_rows(file: Path, required: Sequence[str]) -> tuple[tuple[str, ...], tuple[Mapping[str, str], ...]]:
-    """Return the header and the whole rows of a history."""
-    if not file.is_file():
-        raise RunFolderError(f"{file}: not found; the run has not finished its first evaluation")
-    records = read_records(file)
-    columns = tuple(records[0]) if records else ()
-    missing = [name for name in required if name not in columns]
-    if missing:
-        raise RunFolderError(f"{file}: no column {', '.join(map(repr, missing))}; found {', '.join(columns) or 'none'}")
-    for i, record in enumerate(records):
-        if len(record) != len(columns):
-            raise RunFolderError(f"{file}: record {i + 1} has {len(record)} fields, the header {len(columns)}")
-    return columns, tuple(dict(zip(columns, record, strict=True)) for record in records[1:])
-
-
-def _numbers(rows: Sequence[Mapping[str, str]], names: Sequence[str], file: Path) -> FloatArray:
-    """Return columns as numbers, shape (n, len(names)); NaN where a cell is empty or the column is missing."""
-    numbers = np.full((len(rows), len(names)), np.nan)
-    for i, row in enumerate(rows):
-        for j, name in enumerate(names):
-            try:
-                numbers[i, j] = float(row.get(name) or "nan")
-            except ValueError:
-                raise RunFolderError(f"{file}: record {i + 2}: {name} is not a number: {row[name]!r}") from None
-    return numbers
-
-
 def _require_completed(run: Run) -> None:
     """Raise RunFolderError if there is nothing to draw."""
     if not run.is_completed.any():
         counts = ", ".join(f"{n} {state}" for state, n in Counter(run.states).items()) or "no rows"
-        raise RunFolderError(f"{run.folder}: no completed evaluation yet ({counts})")
+        raise RunFolderError(f"{run.place}: no completed evaluation yet ({counts})")
 
 
 def _require_same_objectives(first: Run, run: Run) -> None:
@@ -253,14 +244,14 @@ def _require_same_objectives(first: Run, run: Run) -> None:
     expected, found = ([f"{o.name} ({o.goal.value})" for o in r.objectives] for r in (first, run))
     if expected != found:
         raise UsageError(
-            f"runs with different objectives cannot share a picture: {first.folder} has {', '.join(expected)}; "
-            f"{run.folder} has {', '.join(found)}"
+            f"runs with different objectives cannot share a picture: {first.place} has {', '.join(expected)}; "
+            f"{run.place} has {', '.join(found)}"
         )
 
 
 def _distinct_names(folders: Sequence[Path]) -> list[str]:
     """Return the shortest endings of the paths that differ from each other."""
-    parts = [folder.resolve().parts for folder in folders]
+    parts = [folder.resolve().with_suffix("" if folder.suffix == ".csv" else folder.suffix).parts for folder in folders]
     if len(set(parts)) < len(parts):
         raise UsageError("the same run folder is given twice")
     length = 1
