@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from hypermap_lite.evaluation.evaluator import Evaluator
     from hypermap_lite.evaluation.outcome import Evaluation
     from hypermap_lite.optimizers.base import Optimizer
+    from hypermap_lite.space.search_space import SearchSpace
     from hypermap_lite.typing import Configuration, FloatArray
 
 logger = logging.getLogger(__name__)
@@ -173,18 +174,19 @@ def run_scenario(
         Connection to the client of a ``client_server`` scenario, instead of stdin and stdout.
     """
     evaluator, optimizer = _build(scenario, function)
-    spec = scenario.evaluator
+    spec, space = scenario.evaluator, optimizer.history.space
+    earlier = _Earlier(scenario, space)
     folder = RunFolder(
         scenario.output.directory,
-        space=optimizer.history.space,
+        space=space,
         objectives=scenario.objectives,
         canonical=scenario.canonical,
         function=None if function is None else name_of(function),
         feasible_output=scenario.feasible_output,
         samples_file=_path(scenario.output.samples_file),
         pareto_file=_path(scenario.output.pareto_file),
+        first_rows=earlier.rows,
     )
-    earlier = _Earlier(scenario, folder)
     with ExitStack() as stack:
         if isinstance(evaluator, ClientServer) and channel is None:
             channel = stack.enter_context(standard_channel())
@@ -205,7 +207,7 @@ def run_scenario(
             observer=observer or RunObserver(),
         )
         try:
-            result = _run_in_folder(runner, scenario, earlier, retry_failed=retry_failed)
+            result = _run_in_folder(runner, scenario, retry_failed=retry_failed)
         except NoValidEvaluationError:
             _say_goodbye(executor)
             raise
@@ -214,9 +216,8 @@ def run_scenario(
     return result
 
 
-def _run_in_folder(runner: Runner, scenario: Scenario, earlier: _Earlier, *, retry_failed: bool) -> Result:
+def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) -> Result:
     with runner.folder as folder, closing(runner.executor):  # workers end before the lock is released
-        earlier.take_over()
         if retry_failed:
             folder.set_failures_aside()
         for path, text in single_points(scenario):
@@ -251,29 +252,26 @@ def _say_goodbye(executor: Executor) -> None:
 
 
 class _Earlier:
-    """The evaluations that a run takes over when it begins; a run that goes on has them, and needs no file any more."""
+    """The evaluations that a run takes over when it begins, read before its folder is touched.
 
-    def __init__(self, scenario: Scenario, folder: RunFolder) -> None:
-        self._folder = folder
-        self._file = scenario.earlier_evaluations
+    A run that goes on has them in its history: then it does not matter that the file is gone, or has changed.
+    """
+
+    def __init__(self, scenario: Scenario, space: SearchSpace) -> None:
         self._evaluations: list[Evaluation] = []
         self._error: ScenarioError | None = None
         try:
-            self._evaluations = earlier_evaluations(scenario, folder.space)
+            self._evaluations = earlier_evaluations(scenario, space)
         except ScenarioError as error:
-            if not folder.history_path.exists():
+            if not (Path(scenario.output.directory) / "history.csv").exists():
                 raise
             self._error = error
 
-    def take_over(self) -> None:
-        """Write them to the open folder, if it has no rows yet."""
-        if self._folder.evaluations:
-            return
+    def rows(self) -> list[Evaluation]:
+        """Return them; raise what was wrong with their file if they are needed all the same."""
         if self._error is not None:
             raise self._error
-        if self._evaluations:
-            self._folder.import_earlier(self._evaluations)
-            logger.info("%d evaluations of %s come first", len(self._evaluations), self._file)
+        return self._evaluations
 
 
 def _path(text: str | None) -> Path | None:

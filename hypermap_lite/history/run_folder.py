@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -51,6 +51,8 @@ class RunFolder:
         The column that says which configurations are feasible, if there is one.
     samples_file, pareto_file
         Files in HyperMapper's format that are kept up to date with it; see `Exports`.
+    first_rows
+        Asked for the evaluations of an earlier experiment that come first, if there are no rows yet.
     """
 
     def __init__(
@@ -64,6 +66,7 @@ class RunFolder:
         feasible_output: FeasibleOutput | None = None,
         samples_file: Path | None = None,
         pareto_file: Path | None = None,
+        first_rows: Callable[[], Sequence[Evaluation]] = tuple,
     ) -> None:
         self.path = Path(path).absolute()
         self.space = space
@@ -78,6 +81,7 @@ class RunFolder:
         self._history = HistoryFormat(space, objectives, feasible_output)
         self._calls = EvaluationsFormat(space, objectives, feasible_output=feasible_output)
         self._exports = Exports(self._history, samples_file=samples_file, pareto_file=pareto_file)
+        self._first_rows = first_rows
         self._open = ExitStack()
 
     @property
@@ -118,6 +122,7 @@ class RunFolder:
             stack.enter_context(run_log(self.path / "run.log"))
             self._load()
             write_scenario(self.scenario_path, self.canonical, self.function)
+            self._begin()
             self._exports.restore(self.evaluations)
             self._open = stack.pop_all()
         return self
@@ -147,6 +152,14 @@ class RunFolder:
         rows = parse_rows(self.evaluations_path, records, self._calls.parse)
         self.replicates = {(row.trial, row.replicate): row for row in rows}
         self._warn_of_missing_calls()
+
+    def _begin(self) -> None:
+        """Write the rows that a new run begins with, all at once and before any other file is touched."""
+        if not self.evaluations and (rows := list(self._first_rows())):
+            text = "".join(map(self._history.format, rows))
+            write_atomically(self.history_path, format_record(self._history.columns) + text)
+            self.evaluations = rows
+            logger.info("the first %d rows are those of an earlier experiment", len(rows))
 
     def _warn_of_missing_calls(self) -> None:
         counts = Counter(trial for trial, _ in self.replicates)
@@ -199,15 +212,6 @@ class RunFolder:
             write_atomically(self.history_path, format_record(self._history.columns) + row)
         self.evaluations.append(evaluation)
         self._exports.append(evaluation)
-
-    def import_earlier(self, evaluations: Sequence[Evaluation]) -> None:
-        """Make evaluations of an earlier experiment the first rows of a run that has none yet, all at once."""
-        if self.evaluations:
-            raise RunFolderError(f"{self.history_path}: has rows already; earlier ones can only come first")
-        rows = "".join(map(self._history.format, evaluations))
-        write_atomically(self.history_path, format_record(self._history.columns) + rows)
-        self.evaluations = list(evaluations)
-        self._exports.restore(self.evaluations)
 
     def set_failures_aside(self) -> int:
         """Take the failures at the end out of the files, so that they are evaluated again; return their number.
