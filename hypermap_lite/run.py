@@ -258,6 +258,7 @@ class _Earlier:
     """
 
     def __init__(self, scenario: Scenario, space: SearchSpace) -> None:
+        self._budget = scenario.budget.evaluations
         self._evaluations: list[Evaluation] = []
         self._error: ScenarioError | None = None
         try:
@@ -271,6 +272,9 @@ class _Earlier:
         """Return them; raise what was wrong with their file if they are needed all the same."""
         if self._error is not None:
             raise self._error
+        n = len(self._evaluations)
+        if n >= self._budget:
+            logger.warning("budget.evaluations is %d in all, and %d earlier ones use it up", self._budget, n)
         return self._evaluations
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from hypermap_lite.evaluation.placeholders import as_argument
-from hypermap_lite.scenario.model import ComponentSpec, ParameterSpec, Scenario
+from hypermap_lite.scenario.model import ComponentSpec, OutputSpec, ParameterSpec, Scenario
 
 INDENT = " " * 12
 """Width of the column of headings."""
@@ -22,17 +22,26 @@ def summarize(scenario: Scenario) -> str:
         "priors": [line for prior in scenario.joint_priors for line in _joint_prior(prior)],
         "objectives": _objectives(scenario),
         "feasibility": _feasible_output(scenario),
-        "earlier": [f"the evaluations of {scenario.earlier_evaluations} come first"] * _has_earlier(scenario),
+        "earlier": _earlier(scenario),
         "method": _method(scenario),
         "budget": [_budget(scenario)],
         "evaluator": [_evaluator(scenario)],
-        "output": [scenario.output.directory],
+        "output": [text for text in _output(scenario.output) if text],
     }
     return "\n".join(f"{heading:<12}" + f"\n{INDENT}".join(lines) for heading, lines in sections.items() if lines)
 
 
-def _has_earlier(scenario: Scenario) -> bool:
-    return scenario.earlier_evaluations is not None
+def _earlier(scenario: Scenario) -> list[str]:
+    file = scenario.earlier_evaluations
+    return [] if file is None else [f"the evaluations of {file} come first, and count towards design and budget"]
+
+
+def _output(output: OutputSpec) -> Iterator[str | None]:
+    yield output.directory
+    yield output.samples_file
+    yield output.pareto_file
+    yield "parameter importance" if output.parameter_importance else None
+    yield "best by the surrogate" if output.posterior_best else None
 
 
 def _experiment(scenario: Scenario) -> list[str]:

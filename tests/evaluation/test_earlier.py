@@ -179,6 +179,22 @@ def test_run_that_began_without_them_takes_none_over(tmp_path):
         optimize({**SCENARIO, "earlier_evaluations": str(file)}, black_box, output_directory=tmp_path / "run")
 
 
+def test_budget_that_they_use_up_is_warned_of(tmp_path, caplog):
+    file = write(tmp_path / "samples.csv", HEADER, *ROWS, *ROWS)
+    scenario = {**SCENARIO, "earlier_evaluations": str(file), "budget": {"evaluations": 6}}
+    result = optimize(scenario, black_box, output_directory=tmp_path / "run")
+    assert len(result.evaluations) == 6
+    assert "budget.evaluations is 6 in all, and 6 earlier ones use it up" in caplog.text
+
+
+def test_calls_that_others_made_are_not_missed(tmp_path, caplog):
+    file = write(tmp_path / "samples.csv", HEADER, *ROWS)
+    scenario = {**SCENARIO, "earlier_evaluations": str(file)}
+    for _ in range(2):
+        optimize(scenario, black_box, output_directory=tmp_path / "run")
+    assert "are missing" not in caplog.text
+
+
 def test_time_limit_is_that_of_the_run_not_of_the_earlier_experiment(tmp_path):
     file = write(tmp_path / "samples.csv", "x,n,o,c,f,Timestamp", "1,1,1,true,2,7200000")
     scenario = {**SCENARIO, "earlier_evaluations": str(file), "budget": {"evaluations": 5, "minutes": 30}}

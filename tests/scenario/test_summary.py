@@ -125,3 +125,9 @@ def test_a_grid_of_given_levels_is_as_large_as_it_is() -> None:
     }
     text = page(input_parameters=parameters, design_of_experiment={"type": "grid", "levels": 4})
     assert "evaluations 1 to 13: grid" in text
+
+
+def test_earlier_evaluations_and_all_output_are_named() -> None:
+    text = page(earlier_evaluations="old.csv", output={"samples_file": "new.csv", "posterior_best": True})
+    assert "earlier     the evaluations of old.csv come first" in text
+    assert text.endswith("output      outputs/demo\n            new.csv\n            best by the surrogate")
