@@ -68,6 +68,18 @@ def test_reports_are_in_the_log_and_printed(tmp_path, monkeypatch, capsys):
         assert text in log
 
 
+def test_finished_run_reports_later_without_another_evaluation(tmp_path):
+    quiet = {**SCENARIO, "output": {}, "optimizer": "random_search"}
+    optimize(quiet, black_box, output_directory=tmp_path)
+
+    def forbidden(_):
+        raise AssertionError
+
+    result = optimize(quiet, forbidden, output_directory=tmp_path, overrides=["output.posterior_best=true"])
+    assert result.posterior_best is not None
+    assert result.parameter_importance is None
+
+
 def test_importance_is_the_same_twice():
     scenario = one_axis({"name": "f"})
     history = history_of(scenario, [(0.1 * i, {"f": (0.1 * i - 0.4) ** 2}) for i in range(8)])

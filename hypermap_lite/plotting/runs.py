@@ -201,7 +201,11 @@ def load_runs(sources: Sequence[Source], labels: Sequence[str] | None = None) ->
     if labels is not None and len(labels) != len(sources):
         raise UsageError(f"{len(labels)} labels for {len(sources)} runs: give one label per run, in the same order")
     runs = [load_run(source) for source in sources]
-    names = labels if labels is not None else _distinct_names([run.place for run in runs])
+    names = (
+        labels
+        if labels is not None
+        else _distinct_names([run.folder if run.samples is None else run.samples.with_suffix("") for run in runs])
+    )
     for run in runs:
         _require_completed(run)
         _require_same_objectives(runs[0], run)
@@ -249,9 +253,9 @@ def _require_same_objectives(first: Run, run: Run) -> None:
         )
 
 
-def _distinct_names(folders: Sequence[Path]) -> list[str]:
+def _distinct_names(places: Sequence[Path]) -> list[str]:
     """Return the shortest endings of the paths that differ from each other."""
-    parts = [folder.resolve().with_suffix("" if folder.suffix == ".csv" else folder.suffix).parts for folder in folders]
+    parts = [place.resolve().parts for place in places]
     if len(set(parts)) < len(parts):
         raise UsageError("the same run folder is given twice")
     length = 1

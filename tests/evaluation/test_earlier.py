@@ -1,12 +1,14 @@
 """Tests for earlier.py, and for runs that begin with the evaluations of another."""
 
 import csv
+import json
 import re
 
 import pytest
 
 from hypermap_lite import Optimizer, optimize
 from hypermap_lite.assembly import build_optimizer, build_space
+from hypermap_lite.cli import main
 from hypermap_lite.errors import RunFolderError, ScenarioError
 from hypermap_lite.evaluation.earlier import earlier_evaluations, rows_of
 from hypermap_lite.evaluation.outcome import State
@@ -193,6 +195,17 @@ def test_calls_that_others_made_are_not_missed(tmp_path, caplog):
     for _ in range(2):
         optimize(scenario, black_box, output_directory=tmp_path / "run")
     assert "are missing" not in caplog.text
+
+
+def test_fresh_start_may_take_over_the_rows_of_the_run_it_sets_aside(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "box.py").write_text("def f(c):\n    return c['x']\n")
+    evaluator = {"type": "python", "function": "box:f"}
+    (tmp_path / "s.json").write_text(json.dumps({**SCENARIO, "evaluator": evaluator, "budget": {"evaluations": 4}}))
+    assert main(["s.json", "--no-plot"]) == 0
+    changes = ["--set", "earlier_evaluations=outputs/demo", "--set", "budget.evaluations=6"]
+    assert main(["run", "s.json", "--no-plot", "--fresh", *changes]) == 0
+    assert [phase for _, phase, *_ in rows(tmp_path / "outputs" / "demo")] == ["earlier"] * 4 + ["random"] * 2
 
 
 def test_time_limit_is_that_of_the_run_not_of_the_earlier_experiment(tmp_path):
