@@ -132,7 +132,7 @@ def _states(table: Table, names: Sequence[str], columns: Sequence[FeasibilityCol
             is_feasible = column.is_feasible(text)
             if states[k] is State.COMPLETED and is_feasible is None:
                 problem = f"{table.name}, record {table.numbers[k]}: '{column.name}' is '{text}'"
-                raise ScenarioError("$", problem, allowed=f"'{column.true_value}' or '{column.false_value}'")
+                raise ScenarioError("$", problem, allowed=f"'{column.yes[0]}' or '{column.no[0]}'")
             if is_feasible is False and states[k] is not None:
                 states[k] = State.INFEASIBLE
     return states

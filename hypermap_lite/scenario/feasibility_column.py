@@ -9,24 +9,25 @@ from typing import Any, Final, Self
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeasibilityColumn:
-    """Name of the column and its two texts."""
+    """Name of the column and its texts."""
 
     name: str
-    true_value: str = "true"
-    false_value: str = "false"
+    yes: tuple[str, ...] = ("true", "1", "1.0", "yes")
+    no: tuple[str, ...] = ("false", "0", "0.0", "no")
 
     @classmethod
     def of(cls, scenario: Mapping[str, Any]) -> Self | None:
         """Return the column that a canonical scenario names; None if it has none."""
         section = scenario.get("feasible_output")
-        return cls(**{key: section[key] for key in ("name", "true_value", "false_value")}) if section else None
+        if not section:
+            return None
+        return cls(name=section["name"], yes=(section["true_value"],), no=(section["false_value"],))
 
     def is_feasible(self, text: str) -> bool | None:
-        """Return what a cell says, in upper or lower case; None if it is neither of the two texts."""
-        yes, no = self.true_value, self.false_value
-        if yes.casefold() != no.casefold():
-            yes, no, text = yes.casefold(), no.casefold(), text.casefold()
-        return {yes: True, no: False}.get(text)
+        """Return what a cell says, in upper or lower case; None if it is none of the texts."""
+        texts = dict.fromkeys(self.yes, True) | dict.fromkeys(self.no, False)
+        folded = {known.casefold(): meaning for known, meaning in texts.items()}
+        return folded.get(text.casefold()) if len(folded) == len(texts) else texts.get(text)
 
 
 USUAL: Final = (FeasibilityColumn(name="Valid"), FeasibilityColumn(name="feasible"))

@@ -81,10 +81,10 @@ def test_repeated_configurations_are_kept(tmp_path):
 
 def test_feasibility_goes_by_the_scenarios_own_texts():
     table = Table("t.csv", ("x", "n", "o", "c", "f", "ok"), (("1", "1", "1", "true", "2", "no"),), (2,))
-    (row,) = rows_of(table, SPACE, OBJECTIVES, FeasibilityColumn(name="ok", true_value="yes", false_value="No"))
+    (row,) = rows_of(table, SPACE, OBJECTIVES, FeasibilityColumn(name="ok", yes=("yes",), no=("No",)))
     assert row.state is State.INFEASIBLE
     with pytest.raises(ScenarioError, match=r"record 2: 'ok' is 'no'\n  allowed: '1' or '0'"):
-        rows_of(table, SPACE, OBJECTIVES, FeasibilityColumn(name="ok", true_value="1", false_value="0"))
+        rows_of(table, SPACE, OBJECTIVES, FeasibilityColumn(name="ok", yes=("1",), no=("0",)))
 
 
 @pytest.mark.parametrize(
