@@ -31,10 +31,19 @@ def test_help_lists_exactly_the_kinds_there_are():
 
 @pytest.mark.parametrize("kind", plot.KINDS)
 def test_files_written_are_listed_on_stdout(outputs, capsys, kind):
+    if kind == "regret":  # for one objective
+        write_run(outputs / "op_1", [[1.0], [2.0]], objectives=[{"name": "f"}], parameters=TWO_PARAMETERS)
     assert run_command(kind, outputs / "op_1", "--csv") == 0
     listed = capsys.readouterr().out.split()
     stem = outputs / "op_1" / kind
     assert listed == [f"{stem}.png", f"{stem}.pdf", f"{stem}_data.csv"]
+
+
+def test_regret_takes_the_minimum_and_a_logarithmic_axis(outputs, capsys):
+    write_run(outputs / "op_1", [[3.0], [2.0]], objectives=[{"name": "f"}])
+    run_command("regret", outputs / "op_1", "--minimum", "1.5", "--log", "--csv", "--output", "p.png")
+    data = (outputs.parent / "p_data.csv").read_text().splitlines()
+    assert [line.split(",")[3] for line in data] == ["regret", "1.5", "0.5"]
 
 
 def test_options_reach_the_picture(outputs, capsys):
