@@ -26,7 +26,8 @@ def parse_foreign_value(parameter: Parameter, text: str) -> Value:
     except ValueError:
         value = _nearest(parameter, text)
     if value is None:
-        raise ValueError(f"{parameter.name} is {text!r}, which is not {parameter.allowed()}")
+        shown = text if isinstance(parameter, RealParameter | IntegerParameter) else repr(text)
+        raise ValueError(f"{parameter.name} is {shown}, which is not {parameter.allowed()}")
     return value
 
 
