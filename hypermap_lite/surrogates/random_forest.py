@@ -39,7 +39,8 @@ class RandomForest:
 
     References
     ----------
-    .. [1] Hutter, Xu, Hoos, Leyton-Brown. Algorithm Runtime Prediction: Methods & Evaluation, sec. 4.3.2. AIJ 2014.
+    .. [1] Hutter, Xu, Hoos, Leyton-Brown. Algorithm Runtime Prediction: Methods & Evaluation, sec. 4.3.2 and 4.3.3.
+       AIJ 2014.
     """
 
     number_of_trees: int = 100
@@ -47,6 +48,16 @@ class RandomForest:
     """Share of the axes looked at for each split, in (0, 1]."""
 
     min_samples_leaf: int = 2
+    min_samples_split: int | None = None
+    """Fewest evaluations in a node that is split further; None for two."""
+
+    bootstrap: bool | None = None
+    """Whether each tree sees a sample of the evaluations, drawn with replacement, as with None; else all of them."""
+
+    random_thresholds: bool = False
+    """Whether a split lies anywhere between the two evaluations it separates, instead of halfway: trees then differ
+    where there are no evaluations [1]_."""
+
     starts_warm: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
@@ -56,6 +67,8 @@ class RandomForest:
             raise ScenarioError("$.max_features", f"the share is {self.max_features}", allowed="in (0, 1]")
         if self.min_samples_leaf < 1:
             raise ScenarioError("$.min_samples_leaf", f"it is {self.min_samples_leaf}", allowed=">= 1")
+        if self.min_samples_split is not None and self.min_samples_split < 2:
+            raise ScenarioError("$.min_samples_split", f"it is {self.min_samples_split}", allowed=">= 2")
 
     def fit(
         self,
@@ -86,11 +99,15 @@ class RandomForest:
                 n_estimators=self.number_of_trees,
                 max_features=self.max_features,
                 min_samples_leaf=self.min_samples_leaf,
-                bootstrap=True,
+                min_samples_split=self.min_samples_split or 2,
+                bootstrap=self.bootstrap is not False,
                 random_state=(seed + k) % 2**31,
             )
-            scaled = (y - offset) / magnitude
-            forests.append(Forest.of(regressor.fit(features_of(X, permutations), scaled), offset, magnitude))
+            features = features_of(X, permutations)
+            regressor.fit(features, (y - offset) / magnitude)
+            if self.random_thresholds:
+                redraw_thresholds(regressor, features, np.random.default_rng([seed, k]))
+            forests.append(Forest.of(regressor, offset, magnitude))
         return tuple(forests)
 
 
@@ -100,6 +117,23 @@ def features_of(X: FloatArray, permutations: Permutations) -> FloatArray:
         return X
     columns = [permutations[j].positions(X[:, j]) if j in permutations else X[:, j : j + 1] for j in range(X.shape[1])]
     return np.hstack(columns)
+
+
+def redraw_thresholds(regressor: RandomForestRegressor, X: FloatArray, rng: Rng) -> None:
+    """Move each split of a fitted forest to a place drawn evenly between the two points it separates.
+
+    No point of `X`, shape (n, p), what the trees split, changes its leaf.
+    """
+    single = X.astype(np.float32)  # as the trees see it
+    for estimator in regressor.estimators_:
+        tree = estimator.tree_
+        visits = tree.decision_path(single).tocsc()
+        for node in np.flatnonzero(tree.children_left != tree.children_right):
+            values = single[visits.indices[visits.indptr[node] : visits.indptr[node + 1]], tree.feature[node]]
+            is_left = values <= tree.threshold[node]
+            if is_left.any() and not is_left.all():
+                low, high = float(values[is_left].max()), float(values[~is_left].min())
+                tree.threshold[node] = low + rng.random() * (high - low)
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,9 @@ def test_options_of_the_chosen_type_are_filled_and_of_no_other() -> None:
         "number_of_trees": 100,
         "max_features": 0.5,
         "min_samples_leaf": 2,
+        "min_samples_split": None,
+        "bootstrap": None,
+        "random_thresholds": False,
     }
 
 

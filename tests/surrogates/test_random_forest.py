@@ -6,7 +6,7 @@ import pytest
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.space import PermutationParameter
 from hypermap_lite.surrogates import RandomForest
-from hypermap_lite.surrogates.random_forest import features_of
+from hypermap_lite.surrogates.random_forest import ForestPosterior, features_of
 
 RNG = np.random.default_rng(0)
 X = RNG.random((40, 2))
@@ -67,8 +67,38 @@ def test_a_constant_objective_is_fine() -> None:
     assert np.all(forest.predict(Z).std > 0)
 
 
+def grown(**options: object) -> ForestPosterior:
+    forest = RandomForest(number_of_trees=10, min_samples_leaf=1, bootstrap=False, max_features=1.0, **options)
+    return forest.fit(X[:, :1], X[:, :1] ** 2, is_ordered=ORDERED[:1], rng=np.random.default_rng(0))
+
+
+def test_without_bootstrap_every_tree_goes_through_the_evaluations() -> None:
+    trees = grown().fantasies(np.empty((0, 1)), 0, np.random.default_rng(0)).values
+    assert trees[:, :, 0] == pytest.approx(np.tile(X[:, 0] ** 2, (10, 1)))
+
+
+def test_random_thresholds_keep_the_evaluations_and_make_trees_differ_between_them() -> None:
+    halfway, random = grown(), grown(random_thresholds=True)
+    between = np.linspace(0, 1, 200)[:, None]
+    assert random.predict(X[:, :1]).mean == pytest.approx(halfway.predict(X[:, :1]).mean)
+    assert np.ptp(halfway.predict(between).std) == pytest.approx(0)  # all trees are the same
+    assert np.median(random.predict(between).std) > 2 * halfway.predict(between).std.max()
+
+
+def test_a_node_too_small_is_not_split() -> None:
+    forest = grown(min_samples_split=41).fantasies(np.empty((0, 1)), 0, np.random.default_rng(0))
+    assert np.ptp(forest.values) == pytest.approx(0)
+
+
 @pytest.mark.parametrize(
-    "options", [{"number_of_trees": 1}, {"max_features": 0}, {"max_features": 1.5}, {"min_samples_leaf": 0}]
+    "options",
+    [
+        {"number_of_trees": 1},
+        {"max_features": 0},
+        {"max_features": 1.5},
+        {"min_samples_leaf": 0},
+        {"min_samples_split": 1},
+    ],
 )
 def test_impossible_options_are_refused(options: dict) -> None:
     with pytest.raises(ScenarioError, match=next(iter(options))):
