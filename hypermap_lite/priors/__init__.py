@@ -7,6 +7,7 @@ from hypermap_lite.priors.base import Density, JointDensity, JointPrior, Margina
 from hypermap_lite.priors.beta import BetaPrior
 from hypermap_lite.priors.kernel_density import KernelDensity, KernelDensityPrior
 from hypermap_lite.priors.mixture import JointMixturePrior, MixturePrior
+from hypermap_lite.priors.piecewise import PiecewisePrior
 from hypermap_lite.priors.product import AsJoint, ProductPrior
 from hypermap_lite.priors.truncated_gaussian import GaussianPrior
 from hypermap_lite.priors.uniform import UniformPrior
@@ -18,6 +19,7 @@ PRIORS: Final[Mapping[str, type[MarginalPrior]]] = {
     "mixture": MixturePrior,
     "beta": BetaPrior,
     "weights": WeightsPrior,
+    "piecewise": PiecewisePrior,
 }
 """JSON name of each prior over one parameter."""
 
@@ -41,6 +43,7 @@ __all__ = [
     "KernelDensityPrior",
     "MarginalPrior",
     "MixturePrior",
+    "PiecewisePrior",
     "ProductPrior",
     "UniformPrior",
     "WeightsPrior",

@@ -7,7 +7,16 @@ import pytest
 from scipy.integrate import quad
 from scipy.stats import chi2 as chi2_distribution
 
-from hypermap_lite.priors import PRIORS, BetaPrior, Density, GaussianPrior, MixturePrior, UniformPrior, WeightsPrior
+from hypermap_lite.priors import (
+    PRIORS,
+    BetaPrior,
+    Density,
+    GaussianPrior,
+    MixturePrior,
+    PiecewisePrior,
+    UniformPrior,
+    WeightsPrior,
+)
 from hypermap_lite.space import CategoricalParameter, IntegerParameter, OrdinalParameter, Parameter, RealParameter
 
 REAL = RealParameter(name="x", low=-2.0, high=6.0)
@@ -37,6 +46,9 @@ CASES = [
     pytest.param(BetaPrior(alpha=2, beta=5), ORDINAL, id="beta-ordinal"),
     pytest.param(WeightsPrior(weights=[1, 0, 3]), ORDINAL, id="weights-ordinal"),
     pytest.param(WeightsPrior(weights=[0.1, 0.2, 0.3, 0.4]), CATEGORICAL, id="weights-categorical"),
+    pytest.param(PiecewisePrior(knots=[1, 2, 3, 2, 1]), REAL, id="piecewise"),
+    pytest.param(PiecewisePrior(knots=[0, 1, 0.2]), LOG, id="piecewise-log"),
+    pytest.param(PiecewisePrior(knots=[3, 1]), INTEGER, id="piecewise-integer"),
     pytest.param(UniformPrior(), REAL, id="uniform"),
     pytest.param(UniformPrior(low=0, high=4), REAL, id="uniform-range"),
     pytest.param(UniformPrior(low=0.1), LOG, id="uniform-range-log"),
