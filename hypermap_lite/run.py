@@ -287,7 +287,7 @@ def _build(scenario: Scenario, function: Callable[..., Any] | None) -> tuple[Eva
     try:
         return assembly.build_evaluator(scenario, function), assembly.build_optimizer(scenario)
     except ScenarioError as error:
-        raise error.within(scenario.origin_of(error.path)) from error
+        raise scenario.located(error) from error
 
 
 def name_of(function: Callable[..., Any]) -> str:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import sys
 from argparse import Namespace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hypermap_lite.cli.arguments import add_scenario, load
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, _SubParsersAction
+
+    from hypermap_lite.scenario.model import Scenario
 
 
 def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> ArgumentParser:
@@ -23,6 +26,11 @@ def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> ArgumentParser:
     )
     add_scenario(parser)
     parser.add_argument("--json", action="store_true", help="print the effective scenario as JSON")
+    parser.add_argument(
+        "--upgrade",
+        action="store_true",
+        help="print a HyperMapper scenario in our own form; stderr says which keys mean something else, or nothing",
+    )
     parser.set_defaults(execute=execute)
     return parser
 
@@ -35,17 +43,40 @@ def execute(args: Namespace) -> int:
     ScenarioError
         If it cannot be run as written.
     """
-    from hypermap_lite.assembly import build_space, validate
-    from hypermap_lite.errors import ScenarioError
+    from hypermap_lite.assembly import build_space
     from hypermap_lite.scenario.lint import lint
     from hypermap_lite.scenario.summary import summarize
 
+    if args.upgrade:
+        return _upgrade(args)
     scenario = load(args, args.overrides)
-    try:
-        warnings = validate(scenario)
-    except ScenarioError as error:
-        raise error.within(scenario.origin_of(error.path)) from error
+    warnings = _validate(scenario)
     print(json.dumps(scenario.canonical, indent=2, ensure_ascii=False) if args.json else summarize(scenario))
     for warning in [*lint(scenario, build_space(scenario)), *warnings]:
         print(f"warning: {warning}", file=sys.stderr)
+    return 0
+
+
+def _validate(scenario: Scenario) -> list[str]:
+    from hypermap_lite.assembly import validate
+    from hypermap_lite.errors import ScenarioError
+
+    try:
+        return validate(scenario)
+    except ScenarioError as error:
+        raise scenario.located(error) from error
+
+
+def _upgrade(args: Namespace) -> int:
+    """Print the scenario in our form, once it is known to be valid."""
+    from hypermap_lite.scenario import load_scenario
+    from hypermap_lite.scenario.upgrade import upgrade
+
+    _validate(load_scenario(args.scenario, overrides=args.overrides, prior_from=args.prior_from))
+    result = upgrade(Path(args.scenario), overrides=args.overrides, prior_from=args.prior_from)
+    print(result.text, end="" if result.text.endswith("\n") else "\n")
+    for note in result.notes:
+        print(note, file=sys.stderr)
+    if not result.is_needed:
+        print("note: the scenario is in our own form already; it is printed as it is", file=sys.stderr)
     return 0

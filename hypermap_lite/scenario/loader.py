@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from hypermap_lite.errors import ScenarioError
 from hypermap_lite.scenario.building import build_scenario
 from hypermap_lite.scenario.consistency import check_consistency
 from hypermap_lite.scenario.defaults import fill, fill_derived, has_priors
+from hypermap_lite.scenario.hypermapper import Note, Translation, hypermappers_key, is_hypermapper, translate
 from hypermap_lite.scenario.merging import apply_override, bases_of, merge, merge_layers, read_layers
 from hypermap_lite.scenario.messages import check_document
 from hypermap_lite.scenario.model import Scenario
@@ -21,7 +23,27 @@ from hypermap_lite.scenario.prior_from import replace_priors
 from hypermap_lite.scenario.prior_points import with_points
 from hypermap_lite.scenario.reading import parse_json
 from hypermap_lite.scenario.schemas import root_schema
-from hypermap_lite.scenario.sources import Layer, origin_of
+from hypermap_lite.scenario.sources import Layer, located
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReadScenario:
+    """A scenario put together from its files and the changes on top, not checked yet."""
+
+    document: Mapping[str, Any]
+    """All of it merged, in our form."""
+
+    layers: tuple[Layer, ...]
+    """What it was put together from, the most basic first."""
+
+    directory: Path
+    """Folder of the scenario file."""
+
+    notes: tuple[str, ...]
+    """What was changed that the user did not spell out, a sentence each."""
+
+    hypermappers_notes: tuple[Note, ...]
+    """All that means something else than in HyperMapper, or nothing."""
 
 
 def load_scenario(
@@ -43,23 +65,56 @@ def load_scenario(
     ScenarioError
         If anything is wrong with it; the message names the file, the place in it, and what would be right.
     """
+    read = read_scenario(source, overrides=overrides, prior_from=prior_from)
+    try:
+        complete = with_points(complete_document(read.document), read.layers, read.directory)
+    except ScenarioError as error:
+        raise located(hypermappers_key(error), read.layers) from None
+    return build_scenario(complete, directory=read.directory, layers=read.layers, notes=read.notes)
+
+
+def read_scenario(
+    source: str | Path | Mapping[str, Any], *, overrides: Sequence[str] = (), prior_from: str | Path | None = None
+) -> ReadScenario:
+    """Read and merge a scenario, as `load_scenario` does before it checks and completes it."""
     if isinstance(source, Mapping):
-        directory, layers = Path(), _layers_of(source)
+        directory, written = Path(), _layers_of(source)
     else:
-        directory, layers = Path(source).parent, read_layers(Path(source))
+        directory, written = Path(source).parent, read_layers(Path(source))
+    translations = [_translation_of(layer) for layer in written]
+    layers = [_translated(layer, t) for layer, t in zip(written, translations, strict=True)]
+    notes = [note for translation in translations if translation for note in translation.brief()]
     document = merge_layers(layers)
-    notes: list[str] = []
     if prior_from is not None:
-        document, layer, notes = replace_priors(document, str(prior_from))
+        document, layer, dropped = replace_priors(document, str(prior_from))
         layers.append(layer)
+        notes += dropped
     for override in overrides:
         document, layer = apply_override(document, override)
         layers.append(layer)
+    return ReadScenario(
+        document=document,
+        layers=tuple(layers),
+        directory=directory,
+        notes=tuple(notes),
+        hypermappers_notes=tuple(note for translation in translations if translation for note in translation.notes),
+    )
+
+
+def _translation_of(layer: Layer) -> Translation | None:
+    """Return the translation of a layer in HyperMapper's form; None for any other."""
+    if not is_hypermapper(layer.document):
+        return None
     try:
-        complete = with_points(complete_document(document), layers, directory)
+        return translate(layer.document, layer.directory or Path())
     except ScenarioError as error:
-        raise error.within(origin_of(error.path, layers)) from None
-    return build_scenario(complete, directory=directory, layers=tuple(layers), notes=tuple(notes))
+        raise error.within(layer.name) from None
+
+
+def _translated(layer: Layer, translation: Translation | None) -> Layer:
+    if translation is None:
+        return layer
+    return replace(layer, document=translation.document, places=translation.places)
 
 
 def complete_document(document: Mapping[str, Any]) -> dict[str, Any]:

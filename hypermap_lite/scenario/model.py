@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from hypermap_lite.errors import ScenarioError
 from hypermap_lite.objectives import FeasibleOutput, Objective
 from hypermap_lite.scenario.defaults import is_belief
-from hypermap_lite.scenario.sources import Layer, folders_of, origin_of
+from hypermap_lite.scenario.sources import Layer, folders_of, located, origin_of
 from hypermap_lite.typing import Level, Value
 
 
@@ -188,6 +189,10 @@ class Scenario:
     def origin_of(self, path: str) -> str:
         """Return the name of the file, or the ``--set``, that wrote the value at a path; empty if there is none."""
         return origin_of(path, self.layers)
+
+    def located(self, error: ScenarioError) -> ScenarioError:
+        """Return an error with the file, or ``--set``, that wrote the value at its path, and its place there."""
+        return located(error, self.layers)
 
     def folders_of(self, path: str) -> tuple[Path, ...]:
         """Return where files named at a path are looked for: beside the file that says it, then beside this one."""

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
+
+from hypermap_lite.errors import ScenarioError
 
 Keys: TypeAlias = tuple[str | int, ...]
 """A place in a JSON document: object keys and list indices from the top."""
@@ -25,6 +27,9 @@ class Layer:
     directory: Path | None = None
     """Folder that paths in it are relative to: that of the file; None for a Python mapping and for ``--set``."""
 
+    places: Mapping[str, str] = field(default_factory=dict)
+    """Where the file itself says what stands at a place of `document`, for a file in HyperMapper's form."""
+
 
 def layer_of(path: str, layers: Sequence[Layer]) -> Layer | None:
     """Return the layer that wrote the value at a path, or the nearest value above it; else the last file."""
@@ -40,6 +45,22 @@ def origin_of(path: str, layers: Sequence[Layer]) -> str:
     """Return the name of the layer that wrote the value at a path, or the nearest value above it."""
     layer = layer_of(path, layers)
     return "" if layer is None else layer.name
+
+
+def located(error: ScenarioError, layers: Sequence[Layer]) -> ScenarioError:
+    """Return an error with the name of the layer that wrote the value at its path, and the place as written there."""
+    layer = layer_of(error.path, layers)
+    if layer is None:
+        return error
+    keys = keys_of(error.path)
+    for depth in range(len(keys), 0, -1):
+        written = layer.places.get(path_of(keys[:depth]))
+        if written is not None:
+            if not error.path.startswith(written):
+                problem = f"{error.problem} (here it is {error.path})"
+                error = ScenarioError(written, problem, allowed=error.allowed, hint=error.hint, file=error.file)
+            break
+    return error.within(layer.name)
 
 
 def folders_of(path: str, layers: Sequence[Layer], directory: Path) -> tuple[Path, ...]:

@@ -62,7 +62,7 @@ class Variant:
         try:
             validate(self.effective)
         except ScenarioError as error:
-            raise error.within(self.effective.origin_of(error.path) or str(self.scenario)) from error
+            raise self.effective.located(error).within(str(self.scenario)) from error
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -287,7 +287,7 @@ def _count_configurations(scenario: Scenario) -> float:
     try:
         return build_space(scenario).n_configurations
     except ScenarioError as error:
-        raise error.within(scenario.origin_of(error.path)) from None
+        raise scenario.located(error) from None
 
 
 def _refuse_own(path: str, key: str) -> None:
