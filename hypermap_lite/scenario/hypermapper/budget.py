@@ -156,8 +156,8 @@ def _translate_climbs(draft: Draft) -> None:
     points, limit = 2 * reading["local_search_random_points"], reading["local_search_evaluation_limit"]
     evaluations = points + CLIMBS if limit < 1 else limit
     draft.set("design_of_experiment.type", _design(draft, "random sampling"), "optimization_method")
-    draft.set("design_of_experiment.number_of_samples", 1, "optimization_method")
-    draft.set("optimizer.random_points", min(points, evaluations), "local_search_random_points")
+    for place in ("design_of_experiment.number_of_samples", "optimizer.random_points"):
+        draft.set(place, min(points, evaluations), "local_search_random_points")
     draft.set("budget.evaluations", evaluations, "local_search_evaluation_limit")
     draft.note("local_search_random_points", f"{points} evaluations of the black box, before the climbs, as before")
     if limit < 1:
