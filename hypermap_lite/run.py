@@ -220,6 +220,8 @@ def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) ->
     with runner.folder as folder, closing(runner.executor):  # workers end before the lock is released
         if retry_failed:
             folder.set_failures_aside()
+        for note in scenario.notes:
+            logger.info("%s", note)
         for path, text in single_points(scenario):
             logger.warning("%s: %s", path, text)
         for warning in assembly.evaluator_warnings(scenario, runner.evaluator):
