@@ -144,7 +144,14 @@ def test_evolution_and_local_search_have_budgets_of_their_own() -> None:
     )
     assert search["budget"] == {"evaluations": 60}
     assert search["design_of_experiment"]["number_of_samples"] == 40
-    assert search["optimizer"] == {"type": "local_search", "random_points": 40}
+    assert search["optimizer"] == {"type": "local_search", "random_points": 40, "improvement": "best"}
+
+
+def test_local_search_has_one_trade_off() -> None:
+    search = translated(
+        optimization_method="local_search", optimization_objectives=["a", "b"], scalarization_method="linear"
+    )
+    assert search["acquisition"] == {"scalarization": {"type": "linear"}}
 
 
 def test_evolution_has_one_objective() -> None:

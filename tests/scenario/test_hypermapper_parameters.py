@@ -79,6 +79,12 @@ def test_the_first_of_several_defaults_counts() -> None:
     assert "only the first" in note_on(translation, "input_parameters.p.parameter_default")
 
 
+@pytest.mark.parametrize("default", [[2, 0, 1], [[2, 0, 1]], "(2, 0, 1)"])
+def test_the_default_of_a_permutation_is_a_list(default: Any) -> None:
+    entry = {"parameter_type": "permutation", "values": [3]}
+    assert parameter(entry, parameter_default=default)["parameter_default"] == [2, 0, 1]
+
+
 def test_numbers_among_the_categories_become_texts() -> None:
     entry = parameter({"parameter_type": "categorical", "values": [1, 2.5, "a"]}, parameter_default=1)
     assert entry["values"] == ["1", "2.5", "a"]

@@ -20,6 +20,16 @@ MAX_GRID: Final = 100_000
 CLIMBS: Final = 10_000
 """Evaluations of the climbs of a local search without limit."""
 
+BAYESIAN_KEYS: Final = (
+    "evaluations_per_optimization_iteration",
+    "optimization_iterations",
+    "resume_optimization",
+    "resume_optimization_data",
+    "design_of_experiment.doe_type",
+    "design_of_experiment.number_of_samples",
+)
+"""Keys that mean something only with a model."""
+
 
 def translate_budget(draft: Draft) -> None:
     """Translate the design and the budget.
@@ -35,11 +45,7 @@ def translate_budget(draft: Draft) -> None:
         _translate_batches(draft)
         _translate_design(draft)
         return
-    method = draft.reading["optimization_method"]
-    keys = ("evaluations_per_optimization_iteration", "optimization_iterations", "resume_optimization")
-    for key in (*keys, "resume_optimization_data", "design_of_experiment.doe_type"):
-        draft.unused(key, f"with {method}")
-    draft.unused("design_of_experiment.number_of_samples", f"with {method}")
+    draft.unused(BAYESIAN_KEYS, f"with {draft.reading['optimization_method']}")
     if kind == "local_search":
         _translate_climbs(draft)
     else:
@@ -111,7 +117,7 @@ def _translate_resumption(draft: Draft) -> int:
     """Translate what a run resumes from; return its number of evaluations."""
     table = earlier_rows(draft)
     if table is None:
-        draft.unused("resume_optimization_data", "without resume_optimization")
+        draft.unused(("resume_optimization_data",), "without resume_optimization")
         return 0
     key, file = resumed_file(draft)
     draft.set("earlier_evaluations", draft.file(file), key)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -63,10 +64,11 @@ class Draft:
             if name in KEYS and KEYS[name].note:
                 self.notes.append(Note(name, KEYS[name].note, is_dead=KEYS[name].is_dead))
 
-    def unused(self, key: str, why: str) -> None:
-        """Tell that a key of the file does nothing in it, as in HyperMapper."""
-        if self.reading.has(key):
-            self.notes.append(Note(key, f"it does nothing {why}", is_dead=True))
+    def unused(self, keys: Iterable[str], why: str) -> None:
+        """Tell that keys of the file do nothing in it, as in HyperMapper."""
+        for key in keys:
+            if self.reading.has(key):
+                self.notes.append(Note(key, f"it does nothing {why}", is_dead=True))
 
     def find(self, path: str) -> Path | None:
         """Return the file that a path leads to: in the working directory, or else beside the scenario."""

@@ -77,7 +77,7 @@ def translate_black_box(draft: Draft) -> None:
         hint = "From Python, hypermap_lite.Optimizer has ask and tell."
         raise ScenarioError(f"$.{key}", f"there is no mode '{mode}' here", allowed="default, client-server", hint=hint)
     if mode != "exhaustive":
-        draft.unused("hypermapper_mode.exhaustive_search_file", "without the mode exhaustive")
+        draft.unused(("hypermapper_mode.exhaustive_search_file",), "without the mode exhaustive")
     _translate_feasibility(draft)
 
 
@@ -86,7 +86,7 @@ def _translate_feasibility(draft: Draft) -> None:
     names = ("name", "true_value", "false_value")
     if not reading["feasible_output.enable_feasible_predictor"]:
         for name in names:
-            draft.unused(f"feasible_output.{name}", "without enable_feasible_predictor")
+            draft.unused((f"feasible_output.{name}",), "without enable_feasible_predictor")
         return
     # HyperMapper's defaults change their case as soon as the file has the object.
     implied = {"name": "Valid", "true_value": "true", "false_value": "false"}

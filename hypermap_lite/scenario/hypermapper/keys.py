@@ -53,6 +53,11 @@ def number(least: float | None = None, most: float | None = None) -> dict[str, A
     return {"type": "number"} | {name: limit for name, limit in limits.items() if limit is not None}
 
 
+def between(low: float, high: float) -> dict[str, Any]:
+    """Return the schema of a number between two others."""
+    return {"type": "number", "exclusiveMinimum": low, "exclusiveMaximum": high}
+
+
 def choice(title: str, *names: object) -> dict[str, Any]:
     """Return the schema of one of some values; `title` is what a message calls it."""
     return {"title": title, "enum": list(names)}
@@ -163,7 +168,7 @@ MODEL: Final = (
     Key("cma_es_starting_points", 1, integer(1), "maximizer.starts"),
     Key("cma_es_random_points", 10000, integer(), note=f"{DEAD}, and did nothing before"),
     Key("epsilon_greedy_threshold", 0.1, number(0, 1), "optimizer.epsilon"),
-    Key("evolution_population_size", 50, integer(1), "optimizer.population_size"),
+    Key("evolution_population_size", 50, integer(2), "optimizer.population_size"),
     Key("evolution_generations", 150, integer(0), "budget.evaluations"),
     Key("mutation_rate", 1, integer(1), "optimizer.mutation_rate"),
     Key("evolution_crossover", False, FLAG, "optimizer.crossover"),
@@ -181,8 +186,8 @@ BELIEF: Final = (
         {"type": "number", "exclusiveMinimum": 0},
         "acquisition.prior_weighting.model_weight",
     ),
-    Key("model_good_quantile", 0.05, number(0, 1), "acquisition.prior_weighting.good_quantile"),
-    Key("posterior_computation_lower_limit", 1e-8, number(0, 1), "acquisition.prior_weighting.floor"),
+    Key("model_good_quantile", 0.05, between(0, 1), "acquisition.prior_weighting.good_quantile"),
+    Key("posterior_computation_lower_limit", 1e-8, between(0, 0.5), "acquisition.prior_weighting.floor"),
     Key(
         "prior_limit_estimation_points",
         10000,

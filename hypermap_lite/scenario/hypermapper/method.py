@@ -7,7 +7,7 @@ from typing import Any, Final
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.scenario.defaults import has_priors
 from hypermap_lite.scenario.hypermapper.draft import Draft
-from hypermap_lite.scenario.messages import show
+from hypermap_lite.scenario.hypermapper.weighting import translate_weighting
 
 MAX_CANDIDATES: Final = 2000
 """Most configurations that the acquisition is maximized over before the local search."""
@@ -21,9 +21,6 @@ ACQUISITIONS: Final = {
     "qLogNEHVI": "noisy_expected_improvement",
 }
 """Ours by HyperMapper's names, those of version 3 included."""
-
-LARGEST_FLOOR: Final = 0.5
-"""Floors from here on are taken relative to themselves, since ours are below one."""
 
 MODEL_KEYS: Final = ("models.number_of_trees", "models.max_features", "models.bootstrap", "models.min_samples_split")
 CMA_KEYS: Final = ("cma_es_sigma", "cma_es_starting_points")
@@ -63,18 +60,18 @@ def translate_method(draft: Draft) -> None:
     key = "optimization_method"
     draft.set("optimizer.type", kind, key)
     if kind != "evolutionary":
-        _unused(draft, EVOLUTION_KEYS, "without evolutionary_optimization")
+        draft.unused(EVOLUTION_KEYS, "without evolutionary_optimization")
     if kind != "local_search":
-        _unused(draft, LOCAL_SEARCH_KEYS, "without the method local_search")
+        draft.unused(LOCAL_SEARCH_KEYS, "without the method local_search")
     if kind != "bayesian":
-        _unused(draft, (*BAYESIAN_KEYS, *MODEL_KEYS, *CMA_KEYS, *BOX_KEYS), f"with {reading[key]}")
+        draft.unused((*BAYESIAN_KEYS, *MODEL_KEYS, *CMA_KEYS, *BOX_KEYS), f"with {reading[key]}")
     if kind == "bayesian":
         if reading["epsilon_greedy_threshold"] > 0:
             draft.set("optimizer.epsilon", reading["epsilon_greedy_threshold"], "epsilon_greedy_threshold")
         _translate_model(draft)
         _translate_acquisition(draft)
         _translate_maximizer(draft)
-        _translate_weighting(draft)
+        translate_weighting(draft)
     elif kind == "local_search":
         _translate_local_search(draft)
     else:
@@ -83,20 +80,15 @@ def translate_method(draft: Draft) -> None:
         draft.note("input_parameters", "the priors count with several objectives too; HyperMapper dropped them")
 
 
-def _unused(draft: Draft, keys: tuple[str, ...], why: str) -> None:
-    for key in keys:
-        draft.unused(key, why)
-
-
 def _translate_model(draft: Draft) -> None:
     reading = draft.reading
     draft.set("surrogate.type", reading["models.model"], "models.model")
     if reading["models.model"] == "gaussian_process":
-        _unused(draft, MODEL_KEYS, "with gaussian_process")
+        draft.unused(MODEL_KEYS, "with gaussian_process")
         if not reading["noise"]:
             draft.set("surrogate.noise", False, "noise")
         return
-    draft.unused("noise", "with random_forest")
+    draft.unused(("noise",), "with random_forest")
     if reading["models.number_of_trees"] < 2:
         draft.note("models.number_of_trees", "here it is 2; one tree alone knows no uncertainty")
     draft.set("surrogate.number_of_trees", max(reading["models.number_of_trees"], 2), "models.number_of_trees")
@@ -121,14 +113,13 @@ def _translate_acquisition(draft: Draft) -> None:
     if name == "qLogNEHVI":
         draft.note("acquisition_function", "here it is noisy expected improvement with random scalarizations")
     if len(reading["optimization_objectives"]) == 1:
-        _unused(draft, ("scalarization_method", "weight_sampling", *BOX_KEYS), "with one objective")
+        draft.unused(("scalarization_method", "weight_sampling", *BOX_KEYS), "with one objective")
         return
-    scalarization = {"type": reading["scalarization_method"]}
     if reading["scalarization_method"] == "modified_tchebyshev":
         draft.note("scalarization_method", "with expected improvement, HyperMapper had its sign wrong")
-    draft.set("acquisition.scalarization", scalarization, "scalarization_method")
+    draft.set("acquisition.scalarization.type", reading["scalarization_method"], "scalarization_method")
     if reading["weight_sampling"] == "flat":
-        _unused(draft, BOX_KEYS, "with flat weights")
+        draft.unused(BOX_KEYS, "with flat weights")
         draft.set("acquisition.weights", {"type": "dirichlet"}, "weight_sampling")
         return
     draft.set("acquisition.weights.type", "bounding_box", "weight_sampling")
@@ -152,11 +143,11 @@ def _translate_maximizer(draft: Draft) -> None:
         draft.set("maximizer.type", "cma_es", key)
         draft.set("maximizer.sigma", reading["cma_es_sigma"], "cma_es_sigma")
         draft.set("maximizer.starts", reading["cma_es_starting_points"], "cma_es_starting_points")
-        _unused(draft, ("local_search_starting_points", "local_search_random_points"), "with cma_es")
+        draft.unused(("local_search_starting_points", "local_search_random_points"), "with cma_es")
         return
     if reading[key] == "cma_es":
         draft.note(key, "here it is local_search: cma_es needs real parameters only")
-    _unused(draft, CMA_KEYS, "without cma_es")
+    draft.unused(CMA_KEYS, "without cma_es")
     points = reading["local_search_random_points"]
     draft.set("maximizer.type", "local_search", key)
     draft.set("maximizer.candidates", min(points, MAX_CANDIDATES), "local_search_random_points")
@@ -165,62 +156,15 @@ def _translate_maximizer(draft: Draft) -> None:
         draft.note("local_search_random_points", f"{MAX_CANDIDATES} evenly spread candidates, and some from the priors")
 
 
-def _translate_weighting(draft: Draft) -> None:
-    """Translate how priors enter the acquisition."""
-    reading, path = draft.reading, "acquisition.prior_weighting"
-    of_bopro = ("model_posterior_weight", "model_good_quantile", "posterior_computation_lower_limit")
-    of_pibo = ("prior_beta", "prior_floor", "model_weight")
-    if not has_priors(draft.document):
-        _unused(draft, ("prior_method", *of_bopro, *of_pibo), "without priors")
-        return
-    method = reading["prior_method"].lower()
-    if reading.is_version_3 and reading["acquisition_function"] != "EI_PIBO":
-        draft.set(f"{path}.method", "none", "acquisition_function")
-        _unused(draft, ("prior_method", *of_bopro, *of_pibo), "without EI_PIBO")
-    elif method == "pibo":
-        draft.set(f"{path}.method", "pibo", "prior_method")
-        draft.set(f"{path}.beta", _beta(draft), "prior_beta")
-        draft.set(f"{path}.floor", _floor(draft), "prior_floor")
-        _unused(draft, of_bopro, "with pibo")
-    elif method == "bopro":
-        draft.set(f"{path}.method", "bopro", "prior_method")
-        for key, ours in zip(of_bopro, ("model_weight", "good_quantile", "floor"), strict=True):
-            draft.set(f"{path}.{ours}", reading[key], key)
-        _unused(draft, of_pibo, "with bopro")
-    else:
-        problem = f"there is no method {show(reading['prior_method'])}"
-        raise ScenarioError("$.prior_method", problem, allowed="pibo, bopro")
-
-
-def _beta(draft: Draft) -> float:
-    """Return the strength of piBO for an exponent of beta / n at the n-th suggestion, batches not counted."""
-    reading = draft.reading
-    size = draft.document["budget"].get("batch_size", 1)
-    if reading.is_version_3:
-        return float(reading["model_weight"] * size)
-    beta = reading["prior_beta"]
-    if beta < 0 and beta != -1:
-        raise ScenarioError(
-            "$.prior_beta", f"it is {beta:g}", allowed="a number >= 0, or -1 for a tenth of the iterations"
-        )
-    if size > 1:
-        draft.note("prior_beta", f"times {size} here, since each suggestion of a batch counts for the decay")
-    return float((reading["optimization_iterations"] / 10 if beta == -1 else beta) * size)
-
-
-def _floor(draft: Draft) -> float:
-    """Return the least density, relative to the largest."""
-    floor: float = draft.reading["prior_floor"]
-    draft.note(
-        "prior_floor", "relative to the priors' largest density; HyperMapper's was added to the density as it is"
-    )
-    return floor if floor < LARGEST_FLOOR else floor / (1 + floor)
-
-
 def _translate_local_search(draft: Draft) -> None:
     reading = draft.reading
     weights: list[Any] = reading["local_search_scalarization_weights"]
     names = reading["optimization_objectives"]
+    draft.set("optimizer.improvement", "best", "optimization_method")
+    if len(names) > 1:
+        draft.set("acquisition.scalarization.type", reading["scalarization_method"], "scalarization_method")
+    else:
+        draft.unused(("scalarization_method",), "with one objective")
     if weights == [1]:
         return
     if len(weights) != len(names):
@@ -236,6 +180,7 @@ def _translate_evolution(draft: Draft) -> None:
     if len(reading["optimization_objectives"]) > 1:
         problem, key = "evolutionary_optimization has one objective", "$.optimization_objectives"
         raise ScenarioError(key, problem, allowed="a list of 1 name", hint="Use bayesian_optimization for several.")
+    draft.unused(("scalarization_method",), "with one objective")
     names = {
         "evolution_population_size": "population_size",
         "batch_size": "tournament_size",

@@ -80,7 +80,9 @@ def _values(draft: Draft, name: str, kind: str, values: Sequence[Any]) -> list[A
 def _default(draft: Draft, name: str, kind: str, values: Sequence[Any], default: Any) -> Any:
     """Return the default value; None if there is none, or none that can be kept."""
     key = f"input_parameters.{name}.parameter_default"
-    if isinstance(default, list) and kind != "permutation":
+    if kind == "permutation":
+        return _order(draft, key, default)
+    if isinstance(default, list):
         if len(default) != 1:
             draft.note(key, "only the first of its values is evaluated")
         default = default[0] if default else None
@@ -88,7 +90,7 @@ def _default(draft: Draft, name: str, kind: str, values: Sequence[Any], default:
         return None
     if kind == "categorical":
         default = default if isinstance(default, str) else show(default)
-    elif isinstance(default, str) and kind != "permutation":
+    elif isinstance(default, str):
         raise ScenarioError(f"$.{key}", f"{show(default)} is a string", allowed="a number")
     if kind in ("real", "integer") and not min(values) <= default <= max(values):
         draft.note(key, f"{show(default)} lies outside the bounds {show(values)}, so it is not evaluated")
@@ -97,6 +99,17 @@ def _default(draft: Draft, name: str, kind: str, values: Sequence[Any], default:
         levels = ", ".join(map(str, values))
         raise ScenarioError(f"$.{key}", f"{show(default)} is none of the levels", allowed=levels)
     return default
+
+
+def _order(draft: Draft, key: str, default: Any) -> list[int] | None:
+    """Return the default of a permutation, which is one list of its elements, or a list of such lists."""
+    if isinstance(default, list) and default and isinstance(default[0], list):
+        if len(default) > 1:
+            draft.note(key, "only the first of its values is evaluated")
+        default = default[0]
+    if isinstance(default, str):
+        default = [int(element) for element in re.findall(r"\d+", default)]
+    return default if isinstance(default, list) else None
 
 
 def _kernel(draft: Draft, name: str, entry: Mapping[str, Any]) -> dict[str, str]:

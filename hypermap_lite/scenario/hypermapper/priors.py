@@ -133,8 +133,8 @@ def translate_estimates(draft: Draft) -> None:
     is_joint = reading["estimate_multivariate_priors"]
     names = reals if is_joint else [name for name, entry in parameters.items() if entry.get("prior") == "estimate"]
     if not names:
-        for key in ("prior_estimation_file", "prior_estimation_quantile", "bandwidth_parameter", "bandwidth_n_factor"):
-            draft.unused(key, "without a prior that is estimated")
+        keys = ("prior_estimation_file", "prior_estimation_quantile", "bandwidth_parameter", "bandwidth_n_factor")
+        draft.unused(keys, "without a prior that is estimated")
         return
     if is_joint:
         for name in names:
