@@ -30,8 +30,8 @@ def add_scenario(parser: ArgumentParser) -> None:
     )
 
 
-def load(args: Namespace, overrides: Sequence[str]) -> Scenario:
-    """Load the scenario that the command line names, and say what that dropped of it.
+def load(args: Namespace, overrides: Sequence[str], *, says_notes: bool = True) -> Scenario:
+    """Load the scenario that the command line names, and say what that changed of it.
 
     Raises
     ------
@@ -41,6 +41,6 @@ def load(args: Namespace, overrides: Sequence[str]) -> Scenario:
     from hypermap_lite.scenario import load_scenario
 
     scenario = load_scenario(args.scenario, overrides=overrides, prior_from=args.prior_from)
-    for note in scenario.notes:
+    for note in scenario.notes if says_notes else ():
         print(f"note: {note}", file=sys.stderr)
     return scenario

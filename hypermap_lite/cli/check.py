@@ -13,8 +13,6 @@ from hypermap_lite.cli.arguments import add_scenario, load
 if TYPE_CHECKING:
     from argparse import ArgumentParser, _SubParsersAction
 
-    from hypermap_lite.scenario.model import Scenario
-
 
 def add_parser(subparsers: _SubParsersAction[ArgumentParser]) -> ArgumentParser:
     """Add the subcommand to the command line."""
@@ -43,36 +41,28 @@ def execute(args: Namespace) -> int:
     ScenarioError
         If it cannot be run as written.
     """
-    from hypermap_lite.assembly import build_space
+    from hypermap_lite.assembly import build_space, validate
+    from hypermap_lite.errors import ScenarioError
     from hypermap_lite.scenario.lint import lint
     from hypermap_lite.scenario.summary import summarize
 
+    scenario = load(args, args.overrides, says_notes=not args.upgrade)
+    try:
+        warnings = validate(scenario)
+    except ScenarioError as error:
+        raise scenario.located(error) from error
     if args.upgrade:
         return _upgrade(args)
-    scenario = load(args, args.overrides)
-    warnings = _validate(scenario)
     print(json.dumps(scenario.canonical, indent=2, ensure_ascii=False) if args.json else summarize(scenario))
     for warning in [*lint(scenario, build_space(scenario)), *warnings]:
         print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 
-def _validate(scenario: Scenario) -> list[str]:
-    from hypermap_lite.assembly import validate
-    from hypermap_lite.errors import ScenarioError
-
-    try:
-        return validate(scenario)
-    except ScenarioError as error:
-        raise scenario.located(error) from error
-
-
 def _upgrade(args: Namespace) -> int:
-    """Print the scenario in our form, once it is known to be valid."""
-    from hypermap_lite.scenario import load_scenario
+    """Print the scenario in our form."""
     from hypermap_lite.scenario.upgrade import upgrade
 
-    _validate(load_scenario(args.scenario, overrides=args.overrides, prior_from=args.prior_from))
     result = upgrade(Path(args.scenario), overrides=args.overrides, prior_from=args.prior_from)
     print(result.text, end="" if result.text.endswith("\n") else "\n")
     for note in result.notes:

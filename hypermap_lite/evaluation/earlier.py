@@ -48,7 +48,7 @@ def earlier_evaluations(scenario: Scenario, space: SearchSpace) -> list[Evaluati
         return rows_of(table, space, scenario.objectives, FeasibilityColumn.of(scenario.canonical))
     except ScenarioError as error:
         place = error if error.path == PATH else error.below(PATH)
-        raise place.within(scenario.origin_of(PATH)) from None
+        raise scenario.located(place) from None
 
 
 def rows_of(
