@@ -197,6 +197,15 @@ def test_an_override_with_hypermappers_key_says_what_it_is_here(key: str, says: 
 
 
 @HAS_FILES
+def test_a_function_that_is_missing_is_named_with_hypermappers_key(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(folder / "hm.json", GOOD)
+    assert main(["hm.json"]) == 2
+    assert "hm.json: $.hypermapper_mode.mode: the scenario names no evaluator" in capsys.readouterr().err
+
+
+@HAS_FILES
 @pytest.mark.parametrize(
     ("changes", "place"),
     [

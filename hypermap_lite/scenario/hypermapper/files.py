@@ -64,6 +64,7 @@ def translate_black_box(draft: Draft) -> None:
     """Translate who evaluates, and the verdict on feasibility."""
     reading, mode = draft.reading, draft.reading["hypermapper_mode.mode"]
     key = "hypermapper_mode.mode"
+    draft.places["$.evaluator"] = f"$.{key}"
     if mode == "client-server":
         draft.set("evaluator.type", "client_server", key)
     elif mode == "exhaustive":
