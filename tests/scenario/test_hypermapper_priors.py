@@ -83,6 +83,12 @@ def test_gaussians_for_all_have_a_number_per_parameter() -> None:
     assert at(document, "input_parameters.n.prior") == {"type": "gaussian", "mean": 2, "std": 3}
 
 
+def test_what_is_said_of_several_parameters_is_one_line() -> None:
+    entries = {name: {**REAL, "prior": "custom_gaussian"} for name in "abc"}
+    (line,) = translate(scenario(input_parameters=entries)).brief()
+    assert line.startswith("input_parameters.a.prior, input_parameters.b.prior, input_parameters.c.prior: cut off")
+
+
 def test_the_gaussian_of_version_3_has_parameters() -> None:
     assert prior(REAL, "gaussian", prior_parameters=[3, 0.5]) == {"type": "gaussian", "mean": 3, "std": 0.5}
 

@@ -34,9 +34,13 @@ class Translation:
     """What means something else here, or nothing."""
 
     def brief(self) -> tuple[str, ...]:
-        """Return the notes on what the file says, those on keys without effect in one line."""
+        """Return the notes on what the file says: keys of which the same is said, or which do nothing, share a line."""
         written = [note for note in self.notes if note.is_written]
-        lines = [str(note) for note in written if not note.is_dead]
+        keys: dict[str, list[str]] = {}
+        for note in written:
+            if not note.is_dead:
+                keys.setdefault(note.text, []).append(note.key)
+        lines = [f"{', '.join(names)}: {text}" for text, names in keys.items()]
         dead = list(dict.fromkeys(note.key for note in written if note.is_dead))
         if dead:
             lines.append(
