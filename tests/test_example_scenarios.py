@@ -18,7 +18,8 @@ from hypermap_lite.study import load_study
 
 EXAMPLES = Path(__file__).parents[1] / "example_scenarios"
 STUDIES = sorted(EXAMPLES.glob("robot/studies/*.json"))
-SCENARIOS = sorted({*EXAMPLES.rglob("*.json")} - {*STUDIES})
+IN_ANOTHER_FORMAT = EXAMPLES.glob("hypermapper/*.json")
+SCENARIOS = sorted({*EXAMPLES.rglob("*.json")} - {*STUDIES, *IN_ANOTHER_FORMAT})
 LIGHT = [file for file in SCENARIOS if "robot" not in file.parts]
 ROBOT = [file for file in SCENARIOS if "robot" in file.parts]
 
