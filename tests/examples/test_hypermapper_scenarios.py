@@ -75,18 +75,18 @@ def test_currin_is_smallest_in_a_corner(formulas: ModuleType) -> None:
 
 
 def test_chakong_haimes_has_its_known_feasible_share_and_hypervolume(formulas: ModuleType) -> None:
-    axis = np.linspace(-19.95, 19.95, 400)  # the middles of cells, whose share is an area
+    axis = np.linspace(-19.9, 19.9, 200)  # the middles of cells, whose share is an area
     rows = np.array([formulas.chakong_haimes(x1, x2) for x1 in axis for x2 in axis])
     is_feasible = rows[:, 2] == 1
-    assert is_feasible.mean() == pytest.approx(0.162, abs=5e-4)
-    assert hypervolume(rows[is_feasible, :2], np.array([260.0, 20.0])) == pytest.approx(37_865, rel=2e-3)
+    assert is_feasible.mean() == pytest.approx(0.162, abs=1e-3)
+    assert hypervolume(rows[is_feasible, :2], np.array([260.0, 20.0])) == pytest.approx(37_865, rel=5e-3)
     assert formulas.chakong_haimes(0, 0)[2] is False
 
 
 def test_multiobjective_branin_has_its_known_hypervolume(formulas: ModuleType) -> None:
-    X = [(x1, x2) for x1 in np.linspace(-5, 10, 401) for x2 in np.linspace(0, 15, 401)]
+    X = [(x1, x2) for x1 in np.linspace(-5, 10, 201) for x2 in np.linspace(0, 15, 201)]
     Y = np.array([(formulas.branin(x1, x2), x1 + x2) for x1, x2 in X])
-    assert hypervolume(Y, np.array([308.2, 25.0])) == pytest.approx(8444.4, rel=1e-3)
+    assert hypervolume(Y, np.array([308.2, 25.0])) == pytest.approx(8444.4, rel=5e-3)
 
 
 def test_ordinal_branin_has_twelve_optimal_points(formulas: ModuleType) -> None:
