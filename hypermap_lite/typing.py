@@ -19,3 +19,10 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 Rng: TypeAlias = np.random.Generator
+
+
+def as_argument(value: Value) -> str:
+    """Return a parameter's value as a program reads it: floats by their shortest exact text, ``0 2 1`` for an order."""
+    if isinstance(value, tuple):
+        return " ".join(map(str, value))
+    return repr(float(value)) if isinstance(value, float) else str(value)

@@ -19,8 +19,9 @@ from hypermap_lite.errors import EvaluationError, ScenarioError, nearest
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, outcome_of
 from hypermap_lite.evaluation.logs import last_text_line, shorten_logs
 from hypermap_lite.evaluation.outcome import Outcome
-from hypermap_lite.evaluation.placeholders import BUILT_IN, as_argument, fill, placeholders_in, unknown_placeholders
+from hypermap_lite.evaluation.placeholders import BUILT_IN, fill, placeholders_in, unknown_placeholders
 from hypermap_lite.objectives import FeasibleOutput
+from hypermap_lite.typing import as_argument
 
 THREAD_CAPS: Final = "HYPERMAP_THREAD_CAPS"
 """Environment variable that names the thread limits a worker set for itself; programs are started without them."""

@@ -6,8 +6,6 @@ import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
 
-from hypermap_lite.typing import Value
-
 BUILT_IN = ("params_json", "params_file", "result_file", "seed", "trial", "replicate", "trial_dir", "python")
 """Placeholders every command may use; the rest are the names of its parameters."""
 
@@ -47,10 +45,3 @@ def unknown_placeholders(arguments: Iterable[str], parameters: Iterable[str]) ->
         for name in placeholders_in(argument):
             if name not in known:
                 yield position, name
-
-
-def as_argument(value: Value) -> str:
-    """Return a parameter's value as a program reads it: floats by their shortest exact text, ``0 2 1`` for an order."""
-    if isinstance(value, tuple):
-        return " ".join(map(str, value))
-    return repr(float(value)) if isinstance(value, float) else str(value)

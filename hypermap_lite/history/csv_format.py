@@ -15,11 +15,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from hypermap_lite.errors import RunFolderError
-from hypermap_lite.evaluation.placeholders import as_argument
 from hypermap_lite.space.parameter import Parameter
 from hypermap_lite.space.permutation import PermutationParameter
 from hypermap_lite.space.search_space import SearchSpace
-from hypermap_lite.typing import Configuration, Value
+from hypermap_lite.typing import Configuration, Value, as_argument
 
 logger = logging.getLogger(__name__)
 

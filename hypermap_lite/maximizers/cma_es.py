@@ -68,7 +68,7 @@ class CmaEs:
         best = []
         for _ in range(MAX_GENERATIONS * problem.space.dimension):
             X = strategy.ask(strategy.population)
-            scores = problem.score(X)
+            scores = np.where(problem.space.is_allowed(X), problem.score(X), -np.inf)
             best.append(X[np.argmax(scores)])
             strategy.tell(X, np.where(np.isfinite(scores), -scores, WORST))
             if strategy.is_finished:

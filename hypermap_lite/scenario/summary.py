@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from hypermap_lite.evaluation.placeholders import as_argument
 from hypermap_lite.scenario.model import ComponentSpec, OutputSpec, ParameterSpec, Scenario
+from hypermap_lite.typing import as_argument
 
 INDENT = " " * 12
 """Width of the column of headings."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,15 +18,6 @@ from hypermap_lite.space import RealParameter, SearchSpace
 
 SPACE = SearchSpace((RealParameter(name="x", low=-2.0, high=2.0),))
 OBJECTIVES = (Objective(name="f"), Objective(name="g"))
-
-
-@dataclass(frozen=True)
-class Valid:
-    """A column of feasibility."""
-
-    name: str = "Valid"
-    true_value: str = "True"
-    false_value: str = "False"
 
 
 def request(directory: Path, trial: int = 0, replicate: int = 0, **configuration: object) -> EvaluationRequest:

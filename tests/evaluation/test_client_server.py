@@ -9,8 +9,9 @@ from hypermap_lite.errors import ClientError
 from hypermap_lite.evaluation.channel import Channel
 from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
 from hypermap_lite.evaluation.outcome import State
+from hypermap_lite.objectives import FeasibleOutput
 from hypermap_lite.space import IntegerParameter, RealParameter, SearchSpace
-from tests.evaluation.examples import Valid, request
+from tests.evaluation.examples import request
 
 SPACE = SearchSpace((RealParameter(name="x", low=-2.0, high=2.0), IntegerParameter(name="n", low=0, high=9)))
 ASKED = ({"x": 0.1, "n": 1}, {"x": 0.2, "n": 2}, {"x": 0.3, "n": 3})
@@ -131,7 +132,7 @@ def test_value_that_is_not_finite_is_a_failed_evaluation(tmp_path):
 
 
 def test_feasibility_is_answered_by_its_texts(tmp_path):
-    column = Valid(name="ok", true_value="1", false_value="0")
+    column = FeasibleOutput(name="ok", true_value="1", false_value="0")
     reply = "x,n,f,ok\n0.1,1,5,1\n0.2,2,6,0\n0.3,3,7,yes\n"
     calls = exchange(tmp_path, Client(reply), feasible=column)
     assert [next(calls).outcome.state for _ in range(2)] == [State.COMPLETED, State.INFEASIBLE]

@@ -8,8 +8,9 @@ import pytest
 from hypermap_lite.errors import EvaluationError, ScenarioError
 from hypermap_lite.evaluation.exhaustive import Exhaustive
 from hypermap_lite.evaluation.outcome import State
+from hypermap_lite.objectives import FeasibleOutput
 from hypermap_lite.space import CategoricalParameter, IntegerParameter, OrdinalParameter, RealParameter, SearchSpace
-from tests.evaluation.examples import Valid, request
+from tests.evaluation.examples import request
 
 SPACE = SearchSpace(
     (IntegerParameter(name="n", low=1, high=3), CategoricalParameter(name="fast", values=("false", "true")))
@@ -46,7 +47,7 @@ def test_value_that_is_not_finite_fails_and_text_is_an_error_with_its_line(tmp_p
 
 
 def test_feasibility_is_read_from_its_column(tmp_path):
-    found = table(tmp_path, feasible_output=Valid(name="ok", true_value="yes", false_value="no"))
+    found = table(tmp_path, feasible_output=FeasibleOutput(name="ok", true_value="yes", false_value="no"))
     outcome = look_up(found, tmp_path, n=2, fast="false")
     assert (outcome.state, outcome.values) == (State.INFEASIBLE, {"cost": 2.0})
     assert look_up(found, tmp_path, n=1, fast="false").state is State.COMPLETED
@@ -54,7 +55,7 @@ def test_feasibility_is_read_from_its_column(tmp_path):
 
 def test_column_of_feasibility_must_be_there(tmp_path):
     with pytest.raises(ScenarioError, match="has no column 'Valid'"):
-        table(tmp_path, feasible_output=Valid())
+        table(tmp_path, feasible_output=FeasibleOutput())
 
 
 def test_first_of_rows_that_repeat_each_other_counts(tmp_path):

@@ -2,7 +2,8 @@
 
 import pytest
 
-from hypermap_lite.evaluation.placeholders import as_argument, fill, placeholders_in, unknown_placeholders
+from hypermap_lite.evaluation.placeholders import fill, placeholders_in, unknown_placeholders
+from hypermap_lite.typing import as_argument
 
 VALUES = {"Force": "-3.5", "k-1": "2", "name": "a b"}
 

@@ -4,9 +4,9 @@ import pytest
 
 from hypermap_lite.evaluation.outcome import State
 from hypermap_lite.evaluation.text_rows import outcome_of_texts
-from tests.evaluation.examples import Valid
+from hypermap_lite.objectives import FeasibleOutput
 
-VALID = Valid(name="ok", true_value="1", false_value="0")
+VALID = FeasibleOutput(name="ok", true_value="1", false_value="0")
 
 
 def outcome(feasible=None, extras=(), **row):

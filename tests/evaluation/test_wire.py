@@ -4,8 +4,8 @@ import pytest
 
 from hypermap_lite.errors import ClientError
 from hypermap_lite.evaluation.wire import ReplyFormat, fields_of, request_lines
+from hypermap_lite.objectives import FeasibleOutput
 from hypermap_lite.space import CategoricalParameter, IntegerParameter, OrdinalParameter, RealParameter, SearchSpace
-from tests.evaluation.examples import Valid
 
 SPACE = SearchSpace(
     (
@@ -15,7 +15,7 @@ SPACE = SearchSpace(
         CategoricalParameter(name="c", values=("red", "true")),
     )
 )
-FORM = ReplyFormat(parameters=("x", "n"), objectives=("f",), feasible=Valid())
+FORM = ReplyFormat(parameters=("x", "n"), objectives=("f",), feasible=FeasibleOutput())
 
 
 def test_values_are_written_exactly():

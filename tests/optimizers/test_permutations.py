@@ -8,12 +8,12 @@ import pytest
 from hypermap_lite import optimize
 from hypermap_lite.assembly import build_optimizer, build_space
 from hypermap_lite.errors import ScenarioError
-from hypermap_lite.evaluation.placeholders import as_argument
 from hypermap_lite.optimizers import OPTIMIZERS
 from hypermap_lite.plotting.parameters import plot_parameters
 from hypermap_lite.scenario.lint import lint
 from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.scenario.summary import summarize
+from hypermap_lite.typing import as_argument
 from tests.optimizers.runs import resumed, run, scenario_of
 
 ORDER = {"parameter_type": "permutation", "values": [6]}
