@@ -39,6 +39,6 @@ class LocalSearch:
         if problem.space.n_configurations <= self.candidates:
             return best_unseen(problem, X, scores)
         axes = np.ones(problem.space.dimension, dtype=bool)
-        refined = [climb(problem.space, problem.score, x, axes) for x in choose_starts(X, scores, self.starts)]
-        points = np.vstack([*[x for x, _ in refined], X])
-        return best_unseen(problem, problem.space.snap(points), np.concatenate([[s for _, s in refined], scores]))
+        refined, heights = climb(problem.space, problem.score, choose_starts(X, scores, self.starts), axes)
+        points = problem.space.snap(np.vstack([refined, X]))
+        return best_unseen(problem, points, np.concatenate([heights, scores]))

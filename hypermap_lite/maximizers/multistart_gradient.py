@@ -66,7 +66,7 @@ class MultistartGradient:
             before = refined
             refined = self._ascend(problem, refined)
             if stepped.any():
-                refined = np.array([climb(problem.space, problem.score, x, stepped)[0] for x in refined])
+                refined, _ = climb(problem.space, problem.score, refined, stepped)
             if np.array_equal(before, refined):
                 break
         points = np.vstack([refined, X])

@@ -140,7 +140,9 @@ def redraw_thresholds(regressor: RandomForestRegressor, X: FloatArray, rng: Rng)
 class Forest:
     """One objective's trees, with mean and variance of every leaf."""
 
-    regressor: RandomForestRegressor
+    trees: list[Any]
+    """Compiled trees; asked themselves, for the forest checks its input longer than it looks up a few points."""
+
     leaf_means: list[FloatArray]
     leaf_variances: list[FloatArray]
     offset: float
@@ -152,11 +154,12 @@ class Forest:
         trees = [estimator.tree_ for estimator in regressor.estimators_]
         means = [tree.value[:, 0, 0] for tree in trees]
         variances = [np.maximum(tree.impurity, VARIANCE_FLOOR) for tree in trees]
-        return cls(regressor, means, variances, offset, scale)
+        return cls(trees, means, variances, offset, scale)
 
     def per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean and standard deviation, both (T, n), of the leaf of each of T trees, in scaled outputs."""
-        leaves = self.regressor.apply(X).T
+        single = np.ascontiguousarray(X, dtype=np.float32)  # as the trees see it
+        leaves = [tree.apply(single) for tree in self.trees]
         mean = np.array([m[index] for m, index in zip(self.leaf_means, leaves, strict=True)])
         variance = np.array([v[index] for v, index in zip(self.leaf_variances, leaves, strict=True)])
         return mean, np.sqrt(variance)

@@ -47,7 +47,7 @@ def test_a_very_large_integer_range_has_few_neighbours_near_and_far(log: bool) -
 def test_climbing_finds_one_integer_among_a_billion(log: bool) -> None:
     space = SearchSpace((IntegerParameter(name="n", low=1, high=10**9, log=log),))
     target = space.encode([{"n": 123_456_789}])[0]
-    x, _ = climb(space, lambda X: -np.abs(X - target).sum(axis=1), np.array([0.5]), np.array([True]))
+    (x,), _ = climb(space, lambda X: -np.abs(X - target).sum(axis=1), np.array([[0.5]]), np.array([True]))
     assert space.decode(x[None])[0]["n"] == 123_456_789
 
 
@@ -65,6 +65,6 @@ def test_climbing_ends_at_the_top() -> None:
         return -np.abs(X - target).sum(axis=1)
 
     start = SPACE.encode([{"r": 0.5, "n": 3, "c": "c"}])[0]
-    x, score = climb(SPACE, distance, start, np.array([False, True, True]))
+    (x,), (score,) = climb(SPACE, distance, start[None], np.array([False, True, True]))
     assert x == pytest.approx(target)
     assert score == pytest.approx(0.0)
