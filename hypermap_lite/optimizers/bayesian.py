@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,9 @@ MAX_INCUMBENTS = 8
 
 IDEAL_POINTS = 512
 """Points at which the ideal values of a constrained problem are looked for."""
+
+NEXT_TO_NOTHING = math.log(1e-4)
+"""Log expected improvement, in normalized objectives, below which a trade-off counts as found."""
 
 FIRST_MILESTONE = 8
 MILESTONE_GROWTH = 1.5
@@ -138,8 +142,7 @@ class BayesianOptimizer(Optimizer):
         has_objectives = len(self.history.completed) >= MIN_COMPLETED
         feasibility = self._feasibility(is_searching=not has_objectives)
         if has_objectives:
-            context = self._context(rng, feasibility)
-            return self._by_score(self._scorer(context, feasibility), self._incumbents(context), trial, rng)
+            return self._with_model(trial, rng, feasibility)
         if feasibility is not None:
             return self._by_score(self._searching(feasibility), self.history.X(), trial, rng)
         return self._drawn_by(self._method.fallback, trial, rng)
@@ -152,6 +155,34 @@ class BayesianOptimizer(Optimizer):
         if not len(new):
             return None
         return Suggestion(trial=trial, configuration=space.decode(new[:1])[0], phase="random")
+
+    def _with_model(self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None) -> Suggestion | None:
+        """Return the best point at a drawn trade-off; weights at which none promises anything may be drawn again."""
+        n_draws = 1 + self._method.weights.redraws * (len(self.history.objectives) > 1)
+        best: tuple[float, Suggestion] | None = None
+        context = self._context(rng, feasibility)
+        for k in range(n_draws):
+            if k:
+                context = replace(context, weights=self._weights(context.normalization, rng))
+            suggestion = self._by_score(self._scorer(context, feasibility), self._incumbents(context), trial, rng)
+            if suggestion is None or n_draws == 1:
+                return suggestion
+            promise = self._promise(context, suggestion)
+            if best is None or promise > best[0]:
+                best = promise, suggestion
+            if promise > NEXT_TO_NOTHING:
+                break
+        return None if best is None else best[1]
+
+    def _promise(self, context: AcquisitionContext, suggestion: Suggestion) -> float:
+        """Return what the acquisition function alone, without prior and feasibility, thinks of a suggestion."""
+        if not self._method.acquisition.is_logarithmic:
+            return math.inf
+        x = self.history.space.encode([suggestion.configuration])
+        return float(self._method.acquisition.scorer(context)(x)[0])
+
+    def _weights(self, normalization: Normalization, rng: Rng) -> FloatArray:
+        return self._method.weights.sample(self.history.objectives, normalization, rng)
 
     def _scorer(self, context: AcquisitionContext, feasibility: FeasibilityPosterior | None) -> Scorer:
         """Return the acquisition function, with the prior and the probability of being feasible where they count."""
@@ -206,7 +237,7 @@ class BayesianOptimizer(Optimizer):
             Y=Y,
             X_pending=self.history.space.encode([s.configuration for s in self.in_flight]),
             scalarization=self._method.scalarization,
-            weights=self._method.weights.sample(self.history.objectives, normalization, rng),
+            weights=self._weights(normalization, rng),
             normalization=normalization,
             rng=rng,
             iteration=1 + self._n_model_based() // self._batch_size,

@@ -76,6 +76,11 @@ class Normalization:
 class WeightSampling(Protocol):
     """Draws the weights of a scalarization: which trade-off is looked for next."""
 
+    @property
+    def redraws(self) -> int:
+        """How often weights at which no point promises anything may be drawn again."""
+        ...
+
     def sample(self, objectives: Sequence[Objective], normalization: Normalization, rng: Rng) -> FloatArray:
         """Return m weights >= 0 that sum to one, shape (m,)."""
         ...
