@@ -165,7 +165,7 @@ CASES = [
         "weight_sampling",
         "bounding_box",
         {"acquisition.weights": {"type": "bounding_box", "limits": {"a": [0, 1], "b": [0, 1]}}},
-        {"acquisition.weights": {"type": "dirichlet"}},
+        {"acquisition.weights": {"type": "dirichlet", "ends": 0.1, "redraws": 8}},
         TWO,
     ),
     Case(

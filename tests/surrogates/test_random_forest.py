@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from sklearn.ensemble import RandomForestRegressor
 
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.space import PermutationParameter
 from hypermap_lite.surrogates import RandomForest
-from hypermap_lite.surrogates.random_forest import ForestPosterior, features_of
+from hypermap_lite.surrogates.random_forest import Forest, ForestPosterior, features_of
 
 RNG = np.random.default_rng(0)
 X = RNG.random((40, 2))
@@ -17,9 +18,9 @@ Z = np.array([[0.1, 0.5], [0.9, 0.5]])
 
 
 def test_mean_is_scikit_learns() -> None:
-    regressor = FOREST.forests[1].regressor
-    expected = FOREST.forests[1].offset + FOREST.forests[1].scale * regressor.predict(Z)
-    assert FOREST.predict(Z).mean[:, 1] == pytest.approx(expected)
+    regressor = RandomForestRegressor(n_estimators=20, random_state=0).fit(X, X[:, 0] ** 2)
+    mean, _ = Forest.of(regressor, offset=0.0, scale=1.0).per_tree(Z)
+    assert mean.mean(axis=0) == pytest.approx(regressor.predict(Z))
 
 
 def test_a_step_is_learned() -> None:

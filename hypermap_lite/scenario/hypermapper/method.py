@@ -32,6 +32,9 @@ EVOLUTION_KEYS: Final = (
     "evolution_crossover",
     "regularize_evolution",
 )
+ALSO_AT_THE_ENDS: Final = {"ends": 0.1, "redraws": 8}
+"""What uniform weights need to reach the ends of a front, and to spend no evaluation on what is found."""
+
 LOCAL_SEARCH_KEYS: Final = ("local_search_evaluation_limit", "local_search_scalarization_weights")
 BAYESIAN_KEYS: Final = (
     "acquisition_function",
@@ -120,7 +123,10 @@ def _translate_acquisition(draft: Draft) -> None:
     draft.set("acquisition.scalarization.type", reading["scalarization_method"], "scalarization_method")
     if reading["weight_sampling"] == "flat":
         draft.unused(BOX_KEYS, "with flat weights")
-        draft.set("acquisition.weights", {"type": "dirichlet"}, "weight_sampling")
+        draft.set("acquisition.weights", {"type": "dirichlet", **ALSO_AT_THE_ENDS}, "weight_sampling")
+        draft.note(
+            "weight_sampling", "one draw in ten looks at one objective alone; trade-offs that are found are passed over"
+        )
         return
     draft.set("acquisition.weights.type", "bounding_box", "weight_sampling")
     draft.set("acquisition.weights.limits", _limits(draft), "bounding_box_limits")
