@@ -32,6 +32,9 @@ class Pibo:
     floor: float = 0.05
     """Share of the highest density that every point keeps, in [0, 1)."""
 
+    unbounded: bool = False
+    """Whether a density that is unbounded at a bound counts in full next to it, instead of no more than its peak."""
+
     def __post_init__(self) -> None:
         if self.beta is not None and not self.beta >= 0:
             raise ScenarioError("$.beta", f"the strength is {self.beta}", allowed="a number >= 0, or null")
@@ -51,12 +54,15 @@ class Pibo:
 
     def weigh(self, scorer: Scorer, prior: ProductPrior, weight: float) -> PriorWeighted:
         """Return any scorer with the prior in it."""
-        return PriorWeighted(inner=scorer, prior=prior, weight=weight, floor=self.floor)
+        return PriorWeighted(inner=scorer, prior=prior, weight=weight, floor=self.floor, unbounded=self.unbounded)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PriorWeighted:
     """A scorer plus `weight` times the log of the prior density relative to its peak, floored.
+
+    A density that is unbounded at a bound, such as a decay, has its peak a little off it. Next to the bound it counts
+    no more than there, or, if `unbounded`, in full: then the search is drawn to the bound itself.
 
     For acquisition functions in log form this is piBO's product; for the others, which are in normalized objectives,
     the prior is a bonus in those units.
@@ -66,10 +72,14 @@ class PriorWeighted:
     prior: ProductPrior
     weight: float
     floor: float
+    unbounded: bool = False
     _log_peak: float = field(init=False, repr=False)
+    _log_cap: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_log_peak", self.prior.log_peak())
+        cap = self.prior.log_supremum() - self._log_peak if self.unbounded else 0.0
+        object.__setattr__(self, "_log_cap", cap)
 
     @property
     def is_differentiable(self) -> bool:
@@ -84,8 +94,8 @@ class PriorWeighted:
         """Return the scores, shape (n,), and their gradients, shape (n, d)."""
         score, gradient = self.inner.with_gradient(X)
         relative = self.log_relative_density(X)
-        is_below_peak = self.prior.log_density(X) < self._log_peak
-        share = is_below_peak * (np.exp(self._log_share(X) - relative) if self.floor else 1.0)
+        is_below_cap = self.prior.log_density(X) < self._log_peak + self._log_cap
+        share = is_below_cap * (np.exp(self._log_share(X) - relative) if self.floor else 1.0)
         return score + self.weight * relative, gradient + self.weight * share[:, None] * self.prior.log_gradient(X)
 
     def log_relative_density(self, X: FloatArray) -> FloatArray:
@@ -94,5 +104,5 @@ class PriorWeighted:
         return log_share if self.floor == 0 else np.logaddexp(log_share, math.log(self.floor))
 
     def _log_share(self, X: FloatArray) -> FloatArray:
-        """Return log((1 - floor) density / peak), shape (n,); the peak is the most, unbounded densities included."""
-        return math.log1p(-self.floor) + np.minimum(self.prior.log_density(X) - self._log_peak, 0.0)
+        """Return log((1 - floor) density / peak), shape (n,), no more than the cap."""
+        return math.log1p(-self.floor) + np.minimum(self.prior.log_density(X) - self._log_peak, self._log_cap)

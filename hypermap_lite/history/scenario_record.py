@@ -47,7 +47,11 @@ def _pattern(places: Iterable[str]) -> re.Pattern[str]:
 
 _FREE: Final = _pattern(MAY_DIFFER)
 
-ADDED_LATER: Final = {"$.acquisition.feasibility_weighting.method": '"probability"'}
+ADDED_LATER: Final = {
+    "$.acquisition.feasibility_weighting.method": '"probability"',
+    "$.acquisition.weights.ends": "0",
+    "$.acquisition.weights.redraws": "0",
+}
 """Options that scenarios of older versions did not have, and the default (as JSON) they are taken to have."""
 
 MEASURES: Final = ("$.objectives[*].reference_point",)

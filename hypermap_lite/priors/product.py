@@ -94,3 +94,12 @@ class ProductPrior:
     def log_peak(self) -> float:
         """Return the log density at the mode: what relative densities are measured against."""
         return float(self.log_density(self.mode()[None])[0])
+
+    def log_supremum(self) -> float:
+        """Return the log density where it is highest, bounds at which a density on one axis is unbounded included."""
+        best = self.mode()
+        for axes, density in self.factors:
+            if len(axes) == 1:
+                places = np.array([[best[axes[0]]], [0.0], [1.0]])
+                best[axes[0]] = places[np.argmax(density.log_density(places)), 0]  # the first of equals: the mode
+        return float(self.log_density(best[None])[0])

@@ -64,6 +64,26 @@ def test_an_unbounded_density_counts_no_more_than_its_peak() -> None:
     assert (at_bound, near) == pytest.approx((0.0, 0.0))
 
 
+def decaying() -> ProductPrior:
+    return ProductPrior(2, (((0,), AsJoint(BetaPrior(shape="decay").on(RealParameter(name="x", low=0, high=1)))),))
+
+
+def test_in_full_an_unbounded_density_draws_to_its_bound() -> None:
+    scorer = PriorWeighted(inner=inner(), prior=decaying(), weight=1.0, floor=1e-6, unbounded=True)
+    edge, peak = scorer.log_relative_density(np.array([[0.0, 0.5], [0.01, 0.5]]))
+    assert peak == pytest.approx(0.0, abs=1e-5)
+    assert edge == pytest.approx(0.2 * np.log(0.01 / 1e-9), rel=1e-6)  # evaluated 1e-9 from the bound
+
+
+@pytest.mark.parametrize("unbounded", [False, True])
+def test_gradient_of_an_unbounded_density_agrees_with_finite_differences_around_its_peak(unbounded: bool) -> None:
+    scorer = PriorWeighted(inner=inner(), prior=decaying(), weight=1.0, floor=0.05, unbounded=unbounded)
+    points = np.array([[0.003, 0.4], [0.2, 0.4]])
+    _, gradient = scorer.with_gradient(points)
+    e = np.array([1e-7, 0.0])
+    assert gradient[:, 0] == pytest.approx((scorer(points + e) - scorer(points - e)) / 2e-7, rel=1e-3, abs=1e-6)
+
+
 def test_without_floor_gradients_are_finite_where_the_prior_forbids() -> None:
     axis = CategoricalParameter(name="c", values=("a", "b"))
     forbids = ProductPrior(2, (((0,), AsJoint(WeightsPrior(weights=[0, 1]).on(axis))),))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hypermap_lite.priors import AsJoint, GaussianPrior, JointMixturePrior, ProductPrior, WeightsPrior
+from hypermap_lite.priors import AsJoint, BetaPrior, GaussianPrior, JointMixturePrior, ProductPrior, WeightsPrior
 from hypermap_lite.space import CategoricalParameter, RealParameter
 
 A, B = RealParameter(name="a", low=0, high=1), RealParameter(name="b", low=0, high=2)
@@ -37,6 +37,13 @@ def test_the_product_integrates_to_one() -> None:
 def test_the_peak_is_at_the_factors_modes() -> None:
     assert PRIOR.mode() == pytest.approx([0.1, 0.2, 0.5, 0.75])
     assert PRIOR.log_peak() >= PRIOR.log_density(PRIOR.sample(1000, np.random.default_rng(0))).max()
+
+
+def test_the_supremum_is_the_peak_unless_a_density_is_unbounded() -> None:
+    assert PRIOR.log_supremum() == PRIOR.log_peak()
+    decay = AsJoint(BetaPrior(shape="decay").on(RealParameter(name="x", low=0, high=1)))
+    unbounded = ProductPrior(1, (((0,), decay),))
+    assert unbounded.log_supremum() == unbounded.log_density(np.zeros((1, 1)))[0] > unbounded.log_peak()
 
 
 def test_no_factor_means_no_preference() -> None:

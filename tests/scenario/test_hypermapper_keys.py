@@ -130,7 +130,6 @@ CASES = [
                 "min_samples_leaf": 1,
                 "min_samples_split": 5,
                 "bootstrap": False,
-                "random_thresholds": True,
             }
         },
     ),
@@ -225,7 +224,7 @@ CASES = [
         "prior_method",
         "bopro",
         {WEIGHTING: {"method": "bopro", "model_weight": 10, "good_quantile": 0.05, "floor": 1e-8}},
-        {WEIGHTING: {"method": "pibo", "beta": 5.0, "floor": 1e-6}},
+        {WEIGHTING: {"method": "pibo", "beta": 5.0, "floor": 1e-6, "unbounded": True}},
         BELIEF,
     ),
     Case("prior_beta", 3, {f"{WEIGHTING}.beta": 3.0}, {f"{WEIGHTING}.beta": 5.0}, BELIEF),

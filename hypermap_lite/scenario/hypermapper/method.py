@@ -101,7 +101,6 @@ def _translate_model(draft: Draft) -> None:
     draft.set("surrogate.min_samples_leaf", 1, "models.model")
     draft.set("surrogate.min_samples_split", reading["models.min_samples_split"], "models.min_samples_split")
     draft.set("surrogate.bootstrap", reading["models.bootstrap"], "models.bootstrap")
-    draft.set("surrogate.random_thresholds", not reading.is_version_3, "models.model")
 
 
 def _translate_acquisition(draft: Draft) -> None:

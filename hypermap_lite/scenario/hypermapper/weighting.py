@@ -29,6 +29,7 @@ def translate_weighting(draft: Draft) -> None:
         draft.set(f"{path}.method", "pibo", "prior_method")
         draft.set(f"{path}.beta", _beta(draft), "prior_beta")
         draft.set(f"{path}.floor", _floor(draft), "prior_floor")
+        draft.set(f"{path}.unbounded", True, "prior_method")
         draft.unused(of_bopro, "with pibo")
     elif method == "bopro":
         draft.set(f"{path}.method", "bopro", "prior_method")
