@@ -12,6 +12,9 @@ from hypermap_lite.typing import as_argument
 INDENT = " " * 12
 """Width of the column of headings."""
 
+UNSAID_IF_OFF = ("ends", "redraws", "unbounded")
+"""Options that are shown only where they do something."""
+
 
 def summarize(scenario: Scenario) -> str:
     """Return a page that says what will be run: parameters, objectives, method and why, budget, evaluator, output."""
@@ -177,7 +180,11 @@ def _component(spec: ComponentSpec) -> str:
 
 
 def _options(options: Mapping[str, Any]) -> str:
-    given = [f"{key}={_value(value)}" for key, value in options.items() if value is not None]
+    given = [
+        f"{key}={_value(value)}"
+        for key, value in options.items()
+        if value is not None and (value or key not in UNSAID_IF_OFF)
+    ]
     return f"({', '.join(given)})" if given else ""
 
 
