@@ -22,6 +22,8 @@ LEVEL_STEP_GROWTH = 4
 REAL_STEPS = (0.1, 0.03, 0.01, 0.003, 0.001)
 """Steps along an axis tried in both directions, in units of the cube."""
 
+SIGNED_STEPS = np.sort([sign * step for step in REAL_STEPS for sign in (-1.0, 1.0)])
+
 SHORT_STEPS = (0.03, 0.003)
 """Steps along two axes at once, each tried in both directions, in units of the cube."""
 
@@ -32,8 +34,7 @@ def axis_neighbours(parameter: Parameter, code: float) -> FloatArray:
     """Return the codes one exchange away from a code on one axis, both directions, shape (k,)."""
     if isinstance(parameter, PermutationParameter):
         return parameter.neighbours(code)
-    steps = np.array([sign * step for step in REAL_STEPS for sign in (-1.0, 1.0)])
-    around = np.unique(np.clip(code + steps, 0.0, 1.0))
+    around = np.minimum(np.maximum(code + SIGNED_STEPS, 0.0), 1.0)
     if parameter.n_levels is None:
         return around
     level = int(parameter.level_index(np.array([code]))[0])

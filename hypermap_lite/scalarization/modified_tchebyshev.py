@@ -27,7 +27,7 @@ class ModifiedTchebyshev:
     References
     ----------
     .. [1] Yuan, Xu, Wang, Zhang, Yao. Balancing Convergence and Diversity in Decomposition-Based Many-Objective
-       Optimizers, eq. 3. IEEE Trans. Evolutionary Computation, 2016.
+       Optimizers. IEEE Trans. Evolutionary Computation, 2016.
     .. [2] Steuer, Choo. An Interactive Weighted Tchebycheff Procedure for Multiple Objective Programming.
        Mathematical Programming, 1983.
     .. [3] Nardi, Koeplinger, Olukotun. Practical Design Space Exploration. MASCOTS 2019.
