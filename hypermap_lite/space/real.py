@@ -65,7 +65,7 @@ class RealParameter(Parameter):
         value = 10.0**position if self.log else position
         magnitude = abs(value) if self.log else self._span
         digits = SIGNIFICANT_DIGITS - math.ceil(math.log10(magnitude))
-        return min(max(round(value, digits), self.low), self.high)
+        return min(max(round(value, digits), self.low), self.high) + 0.0  # no negative zero
 
     def codes_of_levels(self, levels: IntArray) -> FloatArray:
         """Raise: a real parameter has no levels."""

@@ -109,3 +109,8 @@ def test_illegal_values_are_not_contained(value: object) -> None:
 def test_illegal_ranges_are_refused(kind: str, options: dict, message: str) -> None:
     with pytest.raises(ScenarioError, match=message):
         PARAMETERS[kind](name="x", **options)
+
+
+def test_zero_has_no_sign():
+    parameter = RealParameter(name="x", low=-5.0, high=10.0)
+    assert str(parameter.decode(parameter.encode([0.0]))[0]) == "0.0"
