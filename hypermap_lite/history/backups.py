@@ -13,13 +13,14 @@ from hypermap_lite.history.files import explained
 from hypermap_lite.history.lock import LOCK_FILE, FolderLock
 
 
-def keep_copies(paths: Sequence[Path]) -> None:
-    """Copy the files that exist to ``<name>.bak-N``, with the first N that is free for all."""
+def keep_copies(paths: Sequence[Path]) -> int:
+    """Copy the files that exist to ``<name>.bak-N``, with the first N that is free for all; return N."""
     number = next(n for n in count(1) if not any(_backup(path, n).exists() for path in paths))
     for path in paths:
         if path.exists():
             with explained(path):
                 shutil.copy2(path, _backup(path, number))
+    return number
 
 
 def _backup(path: Path, number: int) -> Path:

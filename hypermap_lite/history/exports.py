@@ -139,5 +139,5 @@ def _content(path: Path) -> bytes:
 
 def _set_aside(path: Path, content: bytes) -> None:
     if content.strip():
-        keep_copies([path])
-        logger.warning("%s: holds something else than rows of this run; it is kept as %s.bak-N", path, path.name)
+        number = keep_copies([path])
+        logger.warning("%s: it held something else than rows of this run, now in %s.bak-%d", path, path.name, number)

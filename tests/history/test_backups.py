@@ -74,6 +74,6 @@ def test_copies_share_the_first_number_that_is_free(tmp_path):
     for path in paths[:2]:
         path.write_text(path.name)
     (tmp_path / "b.bak-1").write_text("older")
-    keep_copies(paths)
+    assert keep_copies(paths) == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a", "a.bak-2", "b", "b.bak-1", "b.bak-2"]
     assert (tmp_path / "b.bak-2").read_text() == "b"

@@ -93,7 +93,7 @@ def test_files_of_something_else_are_kept_aside(tmp_path, caplog):
     for name in ("samples.csv", "pareto.csv"):
         assert (tmp_path / "out" / f"{name}.bak-1").read_text() == f"x,y,Timestamp\n1,2,{name}\n"
         assert len(rows_of(tmp_path / "out" / name)) == 1
-        assert f"{name}: holds something else than rows of this run" in caplog.text
+        assert f"{name}: it held something else than rows of this run, now in {name}.bak-1" in caplog.text
 
 
 def test_own_files_are_not_kept_aside(tmp_path):
