@@ -113,11 +113,16 @@ def _show(result: Result, scenario: Scenario, args: Namespace) -> None:
     for report in (result.parameter_importance, result.posterior_best):
         if report is not None:
             print(f"\n{report}")
-    for name in ("history.csv", "pareto.csv"):
-        print(short(result.run_folder) / name)
+    for path in (result.run_folder / "history.csv", result.run_folder / "pareto.csv", *_exports(scenario)):
+        print(short(path))
     if not args.no_plot:
         with _only_a_note("picture"):
             _draw(result)
+
+
+def _exports(scenario: Scenario) -> list[Path]:
+    """Return the CSV files besides those of the run folder."""
+    return [Path.cwd() / file for file in (scenario.output.samples_file, scenario.output.pareto_file) if file]
 
 
 def overrides_of(args: Namespace) -> list[str]:
