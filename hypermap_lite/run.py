@@ -20,7 +20,7 @@ from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
 from hypermap_lite.evaluation.earlier import earlier_evaluations
 from hypermap_lite.evaluation.executor_choice import choose_executor
 from hypermap_lite.evaluation.executors import Executor
-from hypermap_lite.evaluation.observer import RunObserver
+from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, RunObserver
 from hypermap_lite.evaluation.runner import Runner, StopReason
 from hypermap_lite.history.history import History
 from hypermap_lite.history.run_folder import RunFolder
@@ -221,7 +221,7 @@ def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) ->
         if retry_failed:
             folder.set_failures_aside()
         for note in scenario.notes:
-            logger.info("%s", note)
+            logger.info("%s", note, extra=SAID_BY_COMMAND)
         for path, text in single_points(scenario):
             logger.warning("%s: %s", path, text)
         for warning in assembly.evaluator_warnings(scenario, runner.evaluator):

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TextIO
 
-from hypermap_lite.evaluation.observer import RunObserver
+from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, RunObserver
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -130,6 +130,7 @@ def _logging_to(handler: logging.Handler, level: int) -> Iterator[None]:
     before = package.level
     handler.setLevel(level)
     handler.setFormatter(_Formatter())
+    handler.addFilter(lambda record: not SAID_BY_COMMAND.keys() <= record.__dict__.keys())
     package.addHandler(handler)
     package.setLevel(level)
     try:

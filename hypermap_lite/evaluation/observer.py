@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
 from hypermap_lite.evaluation.outcome import Evaluation, Replicate
 from hypermap_lite.objectives import Objective, values_of
 from hypermap_lite.pareto.dominance import non_dominated
+
+SAID_BY_COMMAND: Final = {"is_said_by_command": True}
+"""The `extra` of a log record that the command line says in its own way: for run.log, not twice for stderr."""
 
 
 class RunObserver:

@@ -19,7 +19,7 @@ from hypermap_lite.evaluation.aggregation import summarize
 from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
 from hypermap_lite.evaluation.executors import Executor
-from hypermap_lite.evaluation.observer import FrontTracker, RunObserver, describe
+from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, FrontTracker, RunObserver, describe
 from hypermap_lite.evaluation.outcome import EARLIER, Evaluation, State, Suggestion
 from hypermap_lite.evaluation.seeds import replicate_seed
 from hypermap_lite.history.run_folder import RunFolder
@@ -106,7 +106,7 @@ class Runner:
         try:
             reason = self._loop()
         except (RepeatedFailureError, ClientError) as error:
-            logger.error("the run is stopped: %s", str(error).partition("\n")[0])
+            logger.error("the run is stopped: %s", str(error).partition("\n")[0], extra=SAID_BY_COMMAND)
             self._tidy_up()
             raise
         self._tidy_up()

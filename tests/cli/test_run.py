@@ -40,6 +40,31 @@ def test_results_go_to_stdout_and_the_story_to_stderr(tmp_path, capsys):
     assert err.count("\ntrial ") + err.startswith("trial ") == 8
 
 
+def test_files_written_besides_the_run_folder_are_named(tmp_path, capsys):
+    files = {"samples_file": "samples.csv", "pareto_file": "front.csv"}
+    files = {key: str(tmp_path / name) for key, name in files.items()}
+    assert run(write_scenario(tmp_path, output={"directory": str(tmp_path / "run"), **files})) == 0
+    out = capsys.readouterr().out
+    assert str(tmp_path / "samples.csv") in out
+    assert str(tmp_path / "front.csv") in out
+
+
+def test_a_note_is_said_once_and_logged(tmp_path, capsys):
+    document = {
+        "optimization_objectives": ["f"],
+        "input_parameters": {"x": {"parameter_type": "real", "values": [0, 1]}},
+        "number_of_cpus": 2,
+        "optimization_iterations": 0,
+        "run_directory": str(tmp_path),
+        "evaluator": {"type": "command", "command": ["echo", '{"f": 1}']},
+    }
+    path = tmp_path / "theirs.json"
+    path.write_text(json.dumps(document))
+    assert run(path) == 0
+    assert capsys.readouterr().err.count("number_of_cpus") == 1
+    assert "INFO number_of_cpus" in (tmp_path / "application_run" / "run.log").read_text()
+
+
 def test_picture_is_drawn_at_the_end(tmp_path, capsys):
     assert main([str(write_scenario(tmp_path, budget={"evaluations": 4})), "-q"]) == 0
     assert (tmp_path / "run" / "pareto.png").stat().st_size > 1000
