@@ -337,7 +337,8 @@ def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = No
             "$.evaluator.type",
             "the scenario names no evaluator",
             allowed=", ".join(EVALUATORS),
-            hint="Name one, or pass a function to hypermap_lite.optimize.",
+            hint='Add one, such as "evaluator": {"type": "python", "function": "module:function"}, or pass a function '
+            "to optimize from Python.",
         )
     outputs = {"objectives": names, "feasible_output": scenario.feasible_output}
     return build_member(EVALUATORS, spec, "evaluator", **outputs, **_surroundings(spec, scenario))
