@@ -219,7 +219,7 @@ FILES: Final = (
         "print_best",
         "auto",
         choice("Choice", "auto", True, False),
-        note=f"{DEAD}; a run ends with its best point or front, a client-server run prints none",
+        note=f"{DEAD}; a run ends with its best point or front (client-server: on stderr), and from Python returns it",
     ),
     Key("log_file", "hypermapper_logfile.log", TEXT, note=f"{DEAD}; the log is run.log in the run folder"),
     Key("verbose_logging", False, FLAG, note=DEAD),
