@@ -338,7 +338,7 @@ def build_evaluator(scenario: Scenario, function: Callable[..., Any] | None = No
             "the scenario names no evaluator",
             allowed=", ".join(EVALUATORS),
             hint='Add one, such as "evaluator": {"type": "python", "function": "module:function"}, or pass a function '
-            "to optimize from Python.",
+            "to hypermap_lite.optimize.",
         )
     outputs = {"objectives": names, "feasible_output": scenario.feasible_output}
     return build_member(EVALUATORS, spec, "evaluator", **outputs, **_surroundings(spec, scenario))
