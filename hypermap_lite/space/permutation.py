@@ -153,7 +153,7 @@ def orders_of(ranks: IntArray, size: int) -> IntArray:
     for place in range(size):
         digit, rest = np.divmod(rest, math.factorial(size - 1 - place))
         orders[:, place] = np.take_along_axis(left, digit[:, None], axis=1)[:, 0]
-        left = left[np.arange(left.shape[1]) != digit[:, None]].reshape(len(ranks), -1)
+        left = left[np.arange(left.shape[1]) != digit[:, None]].reshape(len(ranks), size - 1 - place)
     return orders
 
 

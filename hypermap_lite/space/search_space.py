@@ -126,6 +126,8 @@ class SearchSpace:
 
     def is_allowed(self, X: FloatArray) -> BoolArray:
         """Tell which of n points of the cube decode to configurations that meet all constraints, shape (n,)."""
+        if not len(X):
+            return np.ones(0, dtype=bool)
         used = [j for j, p in enumerate(self.parameters) if p.name in self._constrained]
         return self._hold({self.names[j]: _column(self.parameters[j].decode(X[:, j])) for j in used}, len(X))
 

@@ -8,6 +8,7 @@ import pytest
 from hypermap_lite import optimize
 from hypermap_lite.assembly import build_optimizer, build_space
 from hypermap_lite.errors import ScenarioError
+from hypermap_lite.evaluation.outcome import Evaluation, State
 from hypermap_lite.optimizers import OPTIMIZERS
 from hypermap_lite.plotting.parameters import plot_parameters
 from hypermap_lite.scenario.lint import lint
@@ -154,3 +155,12 @@ def test_check_describes_orders_and_counts_them() -> None:
 def test_sizes_are_limited(values: list[int], message: str) -> None:
     with pytest.raises(ScenarioError, match=message):
         load_scenario(scenario_of(input_parameters={"order": ORDER | {"values": values}}))
+
+
+@pytest.mark.parametrize("constraint", ["order[0] != 1", "other[0] != 1 and c == 'x'"])
+def test_a_run_within_constraints_goes_on_when_everything_was_infeasible(constraint: str) -> None:
+    scenario = scenario_of(input_parameters=MIXED, constraints=[constraint])
+    optimizer = build_optimizer(load_scenario(scenario))
+    for _ in range(7):
+        optimizer.tell([Evaluation(suggestion=s, state=State.INFEASIBLE) for s in optimizer.ask()])
+    assert [e.suggestion.phase for e in optimizer.history] == ["design"] * 5 + ["model"] * 2

@@ -39,6 +39,11 @@ def test_every_code_is_one_of_a_permutation(n: int, codes: list[float]) -> None:
     assert np.array_equal(parameter.level_index(parameter.encode(values)), ranks_of(np.array(values)))
 
 
+def test_no_codes_are_those_of_no_permutations() -> None:
+    assert THREE.decode(np.empty(0)) == []
+    assert THREE.snap(np.empty(0)).shape == (0,)
+
+
 def test_ranks_are_lexicographic() -> None:
     everything = np.array(list(permutations(range(5))))
     assert np.array_equal(ranks_of(everything), np.arange(120))
