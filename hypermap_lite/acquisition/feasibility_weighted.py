@@ -10,7 +10,7 @@ import numpy as np
 
 from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
 from hypermap_lite.acquisition.improvement import SMOOTHING, log_softplus
-from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.surrogates.base import Permutations, Posterior
 from hypermap_lite.surrogates.feasibility import FeasibilityModel, FeasibilityPosterior, ProbitProcess
 from hypermap_lite.typing import BoolArray, FloatArray
 
@@ -26,10 +26,12 @@ class FeasibilityWeighting:
     .. [1] Gardner et al. Bayesian Optimization with Inequality Constraints. ICML 2014, eq. 5.
     """
 
-    def fit(self, X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray) -> FeasibilityPosterior:
+    def fit(
+        self, X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray, permutations: Permutations
+    ) -> FeasibilityPosterior:
         """Learn from n evaluations, shapes (n, d) and (n,), where points are feasible."""
         model: FeasibilityModel = ProbitProcess()
-        return model.fit(X, is_feasible, is_ordered=is_ordered)
+        return model.fit(X, is_feasible, is_ordered=is_ordered, permutations=permutations)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -275,8 +275,10 @@ class BayesianOptimizer(Optimizer):
         if self._feasibility_of is None or self._feasibility_of[0] != len(X) or is_searching:
             pending = self.history.space.encode([s.configuration for s in self.in_flight if is_searching])
             known = np.append(is_feasible, np.zeros(len(pending), dtype=bool))
-            is_ordered = self.history.space.is_ordered
-            posterior = self._method.feasibility_weighting.fit(np.vstack([X, pending]), known, is_ordered)
+            space = self.history.space
+            posterior = self._method.feasibility_weighting.fit(
+                np.vstack([X, pending]), known, space.is_ordered, space.permutations
+            )
             self._feasibility_of = (len(X), posterior)
         return self._feasibility_of[1]
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr, ndtr
 
+from hypermap_lite.surrogates.base import Permutations
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.laplace import Laplace
 from hypermap_lite.surrogates.linear_algebra import solve_lower
@@ -59,7 +60,9 @@ class FeasibilityPosterior(Protocol):
 class FeasibilityModel(Protocol):
     """Options of a model of the feasibility."""
 
-    def fit(self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray) -> FeasibilityPosterior:
+    def fit(
+        self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray, permutations: Permutations | None = None
+    ) -> FeasibilityPosterior:
         """Fit n evaluations, n >= 1, which may all be of one kind.
 
         Parameters
@@ -69,7 +72,9 @@ class FeasibilityModel(Protocol):
         is_feasible
             Which of them were feasible, shape (n,).
         is_ordered
-            Which axes have an order, shape (d,); the others are categorical.
+            Which axes have an order, shape (d,); the others are categorical, or permutations.
+        permutations
+            The axes without an order whose codes are permutations; None for none.
         """
         ...
 
@@ -96,15 +101,18 @@ class ProbitProcess:
     variance: float = 4.0
     """Median of the prior of the latent function's variance: large values make steep boundaries."""
 
-    def fit(self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray) -> ProbitPosterior:
+    def fit(
+        self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray, permutations: Permutations | None = None
+    ) -> ProbitPosterior:
         """Fit n evaluations; see `FeasibilityModel.fit`."""
         labels = np.where(is_feasible, 1.0, -1.0)
         theta = self._mode(X.shape[1])
+        prior = MaternHammingKernel(np.exp(theta[:-1]), is_ordered, permutations or {})
         if is_feasible.any() and not is_feasible.all():
-            rows = telling_rows(X, is_feasible, is_ordered, MAX_ROWS_OF_FIT)
-            theta = self._fit(theta, Evidence(X[rows], labels[rows], is_ordered, self))
-        rows = telling_rows(X, is_feasible, is_ordered, MAX_ROWS)
-        kernel = MaternHammingKernel(np.exp(theta[:-1]), is_ordered)
+            rows = telling_rows(X, is_feasible, prior, MAX_ROWS_OF_FIT)
+            theta = self._fit(theta, Evidence(X[rows], labels[rows], prior, self))
+        rows = telling_rows(X, is_feasible, prior, MAX_ROWS)
+        kernel = replace(prior, lengthscales=np.exp(theta[:-1]))
         variance = math.exp(theta[-1])
         K = variance * kernel(X[rows], X[rows]) + self.constant_variance
         laplace = Laplace.at(K, labels[rows])
@@ -131,12 +139,14 @@ class Evidence:
 
     X: FloatArray
     labels: FloatArray
-    is_ordered: BoolArray
+    kernel: MaternHammingKernel
+    """With any lengthscales."""
+
     model: ProbitProcess
 
     def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the value and its gradient by the log hyperparameters, shape (d + 1,)."""
-        kernel, variance = MaternHammingKernel(np.exp(theta[:-1]), self.is_ordered), math.exp(theta[-1])
+        kernel, variance = replace(self.kernel, lengthscales=np.exp(theta[:-1])), math.exp(theta[-1])
         C, H = kernel.parts(self.X, self.X)
         laplace = Laplace.at(variance * C + self.model.constant_variance, self.labels)
         M = laplace.evidence_weights()
@@ -235,11 +245,11 @@ class Latent:
     H: FloatArray
 
 
-def telling_rows(X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray, n: int) -> IndexArray:
+def telling_rows(X: FloatArray, is_feasible: BoolArray, kernel: MaternHammingKernel, n: int) -> IndexArray:
     """Return the positions of up to n points that say most about the boundary, rising, shape (<= n,).
 
     All of the rarer kind, or n / 2 of them evenly spaced in time; of the other kind, half are those closest to the
-    rarer one, half evenly spaced in time.
+    rarer one by the kernel, half evenly spaced in time.
     """
     if len(X) <= n:
         return np.arange(len(X))
@@ -248,8 +258,7 @@ def telling_rows(X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray, n
     few = evenly(few, n // 2)
     n_many = n - len(few)
     if len(few):
-        lengthscales = HyperPrior(X.shape[1]).mode().lengthscales
-        closeness = MaternHammingKernel(lengthscales, is_ordered)(X[many], X[few]).max(axis=1)
+        closeness = kernel(X[many], X[few]).max(axis=1)
         order = np.argsort(-closeness, kind="stable")
         close, rest = many[order[: n_many // 2]], np.sort(many[order[n_many // 2 :]])
     else:

@@ -8,7 +8,7 @@ import pytest
 from hypermap_lite import optimize
 from hypermap_lite.assembly import build_optimizer, build_space
 from hypermap_lite.errors import ScenarioError
-from hypermap_lite.evaluation.outcome import Evaluation, State
+from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.optimizers import OPTIMIZERS
 from hypermap_lite.plotting.parameters import plot_parameters
 from hypermap_lite.scenario.lint import lint
@@ -164,3 +164,26 @@ def test_a_run_within_constraints_goes_on_when_everything_was_infeasible(constra
     for _ in range(7):
         optimizer.tell([Evaluation(suggestion=s, state=State.INFEASIBLE) for s in optimizer.ask()])
     assert [e.suggestion.phase for e in optimizer.history] == ["design"] * 5 + ["model"] * 2
+
+
+@pytest.mark.parametrize("kernel", ["spearman", "kendall", "hamming"])
+def test_what_is_feasible_is_learned_from_orders_that_are_alike(kernel: str) -> None:
+    parameters = {"order": {"parameter_type": "permutation", "values": [8], "kernel": kernel}}
+    changes = {"design_of_experiment": {"number_of_samples": 30}, "budget": {"evaluations": 40}}
+    optimizer = build_optimizer(load_scenario(scenario_of(input_parameters=parameters, **changes)))
+
+    def is_feasible(order: tuple) -> bool:
+        return order.index(0) < 4
+
+    def judged(suggestion: Suggestion) -> Evaluation:
+        order = suggestion.configuration["order"]
+        state = State.COMPLETED if is_feasible(order) else State.INFEASIBLE
+        return Evaluation(suggestion=suggestion, state=state, values={"near": 1.0, "far": float(order[-1])})
+
+    optimizer.tell([judged(s) for s in optimizer.ask(30)])
+    posterior = optimizer._feasibility(is_searching=False)
+    space = optimizer.history.space
+    X = space.sample_uniform(400, np.random.default_rng(1))
+    truth = np.array([is_feasible(c["order"]) for c in space.decode(X)])
+    log_probability = posterior.log_probability(X)
+    assert log_probability[truth].mean() > log_probability[~truth].mean() + 0.1

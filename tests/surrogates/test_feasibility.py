@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from hypermap_lite.surrogates.feasibility import MAX_ROWS, ProbitProcess, telling_rows
+from hypermap_lite.surrogates.kernels import MaternHammingKernel
 
 ORDERED = np.ones(2, dtype=bool)
+KERNEL = MaternHammingKernel(np.full(2, 0.5), ORDERED)
 MIXED = np.array([True, True, False])
 
 
@@ -86,7 +88,7 @@ def test_a_category_that_was_always_infeasible_is_avoided() -> None:
 def test_the_model_of_many_points_rests_on_the_telling_ones() -> None:
     X = np.random.default_rng(4).random((1000, 2))
     is_feasible = in_the_band(X) & (X[:, 0] < 0.35)
-    rows = telling_rows(X, is_feasible, ORDERED, MAX_ROWS)
+    rows = telling_rows(X, is_feasible, KERNEL, MAX_ROWS)
     assert len(rows) == MAX_ROWS == len(set(rows.tolist()))
     assert set(np.flatnonzero(is_feasible)) <= set(rows)
     posterior = ProbitProcess().fit(X, is_feasible, is_ordered=ORDERED)
@@ -97,6 +99,6 @@ def test_the_model_of_many_points_rests_on_the_telling_ones() -> None:
 
 def test_points_of_one_kind_are_thinned_evenly() -> None:
     X = np.random.default_rng(5).random((1000, 2))
-    rows = telling_rows(X, np.zeros(1000, dtype=bool), ORDERED, 11)
+    rows = telling_rows(X, np.zeros(1000, dtype=bool), KERNEL, 11)
     assert len(rows) == 11
     assert len(set(rows.tolist())) == 11
