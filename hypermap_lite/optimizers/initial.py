@@ -13,7 +13,7 @@ from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
-from hypermap_lite.typing import Configuration
+from hypermap_lite.typing import Configuration, FloatArray
 
 COMPLETIONS = 100
 """Attempts to complete a partial default to a legal configuration."""
@@ -104,7 +104,15 @@ class InitialPhase:
         if earlier and len(X) < n:  # some points are among the earlier ones, so that others take their place
             X = np.vstack([X, self._design.points(space, self._prior, n + len(earlier), rng)])
             X = X[space.unseen(X, taken)][:n]
-        return space.decode(X)
+        configurations = space.decode(X)
+        if self._starts_with_default(X) and not space.contains(configurations[0]):
+            configurations[0] = self.default or {}  # its last digits matter to a constraint
+        return configurations
+
+    def _starts_with_default(self, X: FloatArray) -> bool:
+        """Tell whether the default is the first of n points, shape (n, d)."""
+        space = self._space
+        return self.default is not None and space.keys(X[:1]) == space.keys(space.encode([self.default]))
 
     def __len__(self) -> int:
         """Return the trial at which the initial phase ends: earlier evaluations and points of the design."""
@@ -113,5 +121,6 @@ class InitialPhase:
     def suggestion(self, trial: int) -> Suggestion:
         """Return the suggestion of one of the first trials that are not those of an earlier experiment."""
         configuration = self.configurations[trial - self.n_earlier]
-        is_default = trial == self.n_earlier and configuration == self.default
+        is_first = trial == self.n_earlier
+        is_default = is_first and self._starts_with_default(self._space.encode([configuration]))
         return Suggestion(trial=trial, configuration=configuration, phase="default" if is_default else "design")

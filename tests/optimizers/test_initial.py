@@ -8,7 +8,7 @@ from hypermap_lite.history.history import History
 from hypermap_lite.objectives import Objective
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.priors import AsJoint, GaussianPrior, ProductPrior
-from hypermap_lite.space import IntegerParameter, RealParameter, SearchSpace
+from hypermap_lite.space import Constraint, IntegerParameter, RealParameter, SearchSpace
 
 LINE = SearchSpace((RealParameter(name="x", low=0, high=1, default=0.5),))
 
@@ -18,6 +18,15 @@ def test_the_default_counts_as_one_of_the_samples() -> None:
     assert len(phase) == 4
     assert phase.suggestion(0).configuration == {"x": 0.5}
     assert [phase.suggestion(i).phase for i in range(4)] == ["default", "design", "design", "design"]
+
+
+@pytest.mark.parametrize("constraint", [None, "x <= 2/3", "x >= 2/3", "x == 2/3 or x > 0.9"])
+def test_a_default_of_many_digits_is_the_default_and_allowed(constraint: str | None) -> None:
+    parameters = (RealParameter(name="x", low=0, high=1, default=2 / 3),)
+    space = SearchSpace(parameters, () if constraint is None else (Constraint(constraint, parameters),))
+    first = InitialPhase(space, ProductPrior(1), Sobol(), 4, seed=0).suggestion(0)
+    assert first.phase == "default"
+    assert space.contains(first.configuration)
 
 
 def test_the_default_is_not_repeated_by_the_design() -> None:
