@@ -45,6 +45,9 @@ MAX_INCUMBENTS = 8
 IDEAL_POINTS = 512
 """Points at which the ideal values of a constrained problem are looked for."""
 
+MAX_IDEAL_DRAWS = 8192
+"""Draws at most to find as many that known constraints allow."""
+
 NEXT_TO_NOTHING = math.log(1e-4)
 """Log expected improvement, in normalized objectives, below which a trade-off counts as found."""
 
@@ -253,9 +256,10 @@ class BayesianOptimizer(Optimizer):
         return self._initial.n_beyond + sum(suggestion.phase == MODEL for suggestion in earlier)
 
     def _ideal(self, posterior: Posterior, feasibility: FeasibilityPosterior, rng: Rng) -> FloatArray:
-        """Return what each objective may come down to where points are probably feasible, shape (m,)."""
+        """Return what each objective may come down to where points are allowed and probably feasible, shape (m,)."""
         space = self.history.space
-        return optimistic_ideal(posterior, feasibility, space.snap(sobol_points(IDEAL_POINTS, space.dimension, rng)))
+        X = space.draw(IDEAL_POINTS, lambda n: sobol_points(n, space.dimension, rng), MAX_IDEAL_DRAWS)
+        return optimistic_ideal(posterior, feasibility, X)
 
     def _prior_weight(self) -> float | None:
         """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
