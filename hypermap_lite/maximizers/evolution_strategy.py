@@ -17,6 +17,9 @@ QUIET = -9
 TOLERANCE = 1e-9
 """Smallest steps worth taking, in units of the cube; configurations closer than that are hardly two."""
 
+LARGEST_STEP = 1 / 3
+"""Standard deviation along a single axis at most, as the package has it for several."""
+
 
 class EvolutionStrategy:
     """Covariance matrix adaptation [1]_ by pycma [2]_, minimizing, with all randomness from given generators.
@@ -66,6 +69,11 @@ class EvolutionStrategy:
             "tolx": tolerance,
             "signals_filename": "",
         }
+        self._smallest_step = 0.0
+        if len(start) == 1:  # the package fails where a single axis reaches its limits: `tell` keeps them
+            options["maxstd_boundrange"] = np.inf
+            self._smallest_step = 0.0 if smallest_steps is None else float(smallest_steps[0])
+            smallest_steps = None
         if population is not None:
             options["popsize"] = population
         if smallest_steps is not None:
@@ -95,6 +103,9 @@ class EvolutionStrategy:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self._strategy.tell(list(X), list(values))
+        if X.shape[1] == 1:
+            step = float(self._strategy.stds[0])
+            self._strategy.sigma *= min(max(step, self._smallest_step), LARGEST_STEP) / step
 
 
 def require_cma() -> None:

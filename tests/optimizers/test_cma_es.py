@@ -7,6 +7,7 @@ import pytest
 
 from hypermap_lite.assembly import build_optimizer, validate
 from hypermap_lite.errors import ScenarioError
+from hypermap_lite.maximizers.evolution_strategy import EvolutionStrategy
 from hypermap_lite.optimizers import CmaEs, cma_es
 from hypermap_lite.optimizers.cma_es import finite
 from hypermap_lite.scenario.loader import load_scenario
@@ -85,3 +86,14 @@ def test_a_missing_package_is_named_with_its_extra(monkeypatch: pytest.MonkeyPat
 def test_impossible_options_are_refused(options: dict) -> None:
     with pytest.raises(ScenarioError, match=next(iter(options))):
         CmaEs(**options)
+
+
+@pytest.mark.parametrize("smallest", [None, 0.01])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_single_axis_may_have_its_optimum_at_a_bound(seed: int, smallest: float | None) -> None:
+    steps = None if smallest is None else np.array([smallest])
+    strategy = EvolutionStrategy(np.array([0.3]), 0.2, np.random.default_rng(seed), smallest_steps=steps)
+    for _ in range(30):
+        X = strategy.ask(strategy.population)
+        strategy.tell(X, (X[:, 0] - 1.0) ** 2)
+    assert X.max() > 0.98
