@@ -104,10 +104,12 @@ class CmaEs:
         )
 
     def _start(self, state: SearchState, fitness: FloatArray) -> FloatArray:
-        """Return the best of the points before the search, or of all where those gave nothing."""
-        before = [i for i in range(len(fitness)) if state.phases[i] != self.phase and i < state.n_initial]
-        usable = [i for i in before if np.isfinite(fitness[i])] or list(range(len(fitness)))
-        return state.X[min(usable, key=lambda i: fitness[i])]
+        """Return the best of the first points, or where those gave nothing of all before the search; it stays so."""
+        n_before = state.phases.index(self.phase) if self.phase in state.phases else len(fitness)
+        usable = np.flatnonzero(np.isfinite(fitness))
+        first = usable[usable < state.n_initial]
+        usable = first if len(first) else usable[usable < n_before]
+        return state.X[usable[np.argmin(fitness[usable])]]
 
 
 def finite(fitness: FloatArray, rows: IntArray) -> FloatArray:

@@ -97,3 +97,16 @@ def test_a_single_axis_may_have_its_optimum_at_a_bound(seed: int, smallest: floa
         X = strategy.ask(strategy.population)
         strategy.tell(X, (X[:, 0] - 1.0) ** 2)
     assert X.max() > 0.98
+
+
+def test_it_starts_from_the_same_point_all_along_though_the_design_gave_nothing() -> None:
+    optimizer = build_optimizer(load_scenario(scenario_of(optimizer="cma_es") | {"budget": {"evaluations": 40}}))
+    starts = []
+    while len(optimizer.history) < 40:
+        (suggestion,) = optimizer.ask()
+        optimizer.tell([fail(suggestion) if suggestion.trial < 7 else evaluate(suggestion)])
+        state = optimizer._state(len(optimizer.history))
+        if "cma_es" in state.phases:
+            starts.append(optimizer._search._start(state, state.fitness(state.Y)).tolist())
+    assert len(starts) > 20
+    assert all(start == starts[0] for start in starts)
