@@ -168,8 +168,10 @@ class BayesianOptimizer(Optimizer):
             if k:
                 context = replace(context, weights=self._weights(context.normalization, rng))
             suggestion = self._by_score(self._scorer(context, feasibility), self._incumbents(context), trial, rng)
-            if suggestion is None or n_draws == 1:
+            if n_draws == 1:
                 return suggestion
+            if suggestion is None:
+                break
             promise = self._promise(context, suggestion)
             if best is None or promise > best[0]:
                 best = promise, suggestion

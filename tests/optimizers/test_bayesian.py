@@ -9,6 +9,7 @@ from hypermap_lite.acquisition import ACQUISITIONS, UpperConfidenceBound
 from hypermap_lite.assembly import build_optimizer
 from hypermap_lite.design import DESIGNS
 from hypermap_lite.maximizers import MAXIMIZERS
+from hypermap_lite.maximizers.base import MaximizationProblem, Maximum
 from hypermap_lite.optimizers.bayesian import milestones
 from hypermap_lite.pareto.hypervolume import hypervolume
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS
@@ -236,3 +237,22 @@ def test_a_front_flat_but_for_numerical_dust_does_not_blind_the_search() -> None
 def test_milestones_depend_on_nothing_but_the_count() -> None:
     assert list(milestones(8)) == []
     assert list(milestones(30)) == [8, 12, 18, 27]
+
+
+REDRAWN = {"weights": {"type": "dirichlet", "ends": 0.3, "redraws": 3}}
+
+
+def test_a_trade_off_drawn_again_in_vain_loses_no_suggestion() -> None:
+    class Once:
+        n_calls = 0
+
+        def maximize(self, problem: MaximizationProblem) -> Maximum | None:
+            self.n_calls += 1
+            return Maximum(x=problem.incumbents[0], score=-99.0) if self.n_calls == 1 else None
+
+    optimizer = run(scenario_of(acquisition=REDRAWN), 8)
+    maximizer = Once()
+    optimizer._method = replace(optimizer._method, maximizer=maximizer)
+    optimizer._promise = lambda context, suggestion: -np.inf
+    assert [s.phase for s in optimizer.ask()] == ["model"]
+    assert maximizer.n_calls == 2
