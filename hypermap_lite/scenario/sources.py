@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from hypermap_lite.errors import ScenarioError
+from hypermap_lite.scenario.schemas import KIND_KEYS
 
 Keys: TypeAlias = tuple[str | int, ...]
 """A place in a JSON document: object keys and list indices from the top."""
@@ -88,6 +89,6 @@ def _has(document: Any, keys: Keys) -> bool:
             else isinstance(document, list) and key in range(len(document))
         )
         if not inside:
-            return False
+            return key in KIND_KEYS and isinstance(document, str)  # short for an object of that kind
         document = document[key]
     return True

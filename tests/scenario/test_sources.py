@@ -32,6 +32,12 @@ def test_the_origin_is_the_layer_that_wrote_the_value(path: str, origin: str) ->
     assert origin_of(path, LAYERS) == origin
 
 
+def test_a_bare_string_is_the_type_of_what_it_is_short_for() -> None:
+    layers = (Layer("s.json", {"surrogate": {"type": "a", "trees": 3}}), Layer("--set surrogate=b", {"surrogate": "b"}))
+    assert origin_of("$.surrogate.type", layers) == "--set surrogate=b"
+    assert origin_of("$.surrogate.trees", layers) == "s.json"
+
+
 def test_layers_know_their_folder() -> None:
     layers = (Layer("a/base.json", {"seed": 1}, Path("a")), Layer("--set seed=2", {"seed": 2}))
     assert [getattr(layer_of(path, layers), "directory", "") for path in ("$.budget", "$.seed")] == [Path("a"), None]
