@@ -68,9 +68,9 @@ def load_scenario(
     read = read_scenario(source, overrides=overrides, prior_from=prior_from)
     try:
         complete = with_points(complete_document(read.document), read.layers, read.directory)
+        return build_scenario(complete, directory=read.directory, layers=read.layers, notes=read.notes)
     except ScenarioError as error:
         raise located(hypermappers_key(error), read.layers) from None
-    return build_scenario(complete, directory=read.directory, layers=read.layers, notes=read.notes)
 
 
 def read_scenario(

@@ -109,6 +109,13 @@ def test_a_mistake_in_an_override_names_the_override() -> None:
         load_scenario(GOOD, overrides=["budget.evaluation=3"])
 
 
+def test_a_mistake_that_a_part_finds_names_the_file(tmp_path: Path) -> None:
+    texts = {"name": "Valid", "true_value": "a", "false_value": "a"}
+    (tmp_path / "s.json").write_text(json.dumps({**GOOD, "feasible_output": texts}))
+    with pytest.raises(ScenarioError, match=r"s\.json: \$\.feasible_output\.false_value: .* both called 'a'"):
+        load_scenario(tmp_path / "s.json")
+
+
 def test_a_mistake_in_a_base_names_the_base(tmp_path: Path) -> None:
     (tmp_path / "base.json").write_text('{"budget": {"evaluation": 3}}')
     (tmp_path / "s.json").write_text('{"extends": "base.json", "objectives": [{"name": "y"}]}')
