@@ -96,6 +96,12 @@ def test_a_mode_that_cannot_be_is_named(mode: Any, says: str) -> None:
     assert caught.value.path.startswith("$.hypermapper_mode")
 
 
+def test_a_mode_that_cannot_be_is_answered_with_all_that_can() -> None:
+    with pytest.raises(ScenarioError) as caught:
+        translate(scenario(hypermapper_mode={"mode": "stateless"}))
+    assert caught.value.allowed == "default, client-server, exhaustive"
+
+
 @pytest.mark.parametrize(
     ("output", "values"),
     [

@@ -13,6 +13,9 @@ from hypermap_lite.scenario.table import Table, read_table
 FILE_DEFAULTS: Final = {"output_data_file": "output_samples.csv", "output_pareto_file": "output_pareto.csv"}
 """Names that stand for the application's name and the same."""
 
+MODES: Final = "default, client-server, exhaustive"
+"""Modes that there are here too."""
+
 RUN_FOLDER: Final = "run"
 """End of the run folder's name."""
 
@@ -76,7 +79,7 @@ def translate_black_box(draft: Draft) -> None:
         draft.set("evaluator.file", draft.file(file), "hypermapper_mode.exhaustive_search_file")
     elif mode != "default":
         hint = "From Python, hypermap_lite.Optimizer has ask and tell."
-        raise ScenarioError(f"$.{key}", f"there is no mode '{mode}' here", allowed="default, client-server", hint=hint)
+        raise ScenarioError(f"$.{key}", f"there is no mode '{mode}' here", allowed=MODES, hint=hint)
     if mode != "exhaustive":
         draft.unused(("hypermapper_mode.exhaustive_search_file",), "without the mode exhaustive")
     _translate_feasibility(draft)
