@@ -39,6 +39,40 @@ def test_every_call_is_a_run_of_its_own(tmp_path):
     assert (tmp_path / "run.bak-1" / "history.csv").exists()
 
 
+def rows_of(path):
+    return [line.rsplit(",", 1)[0] for line in path.read_text().splitlines()[1:]]  # without the time
+
+
+def test_resuming_begins_with_the_rows_there_are_now(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    document = {
+        "application_name": "demo",
+        "optimization_objectives": ["f"],
+        "input_parameters": {"x": {"parameter_type": "real", "values": [-2, 2]}},
+        "design_of_experiment": {"number_of_samples": 2},
+        "optimization_iterations": 1,
+    }
+    samples = tmp_path / "demo_output_samples.csv"
+    for shift in (0.0, 100.0):  # the second time, the first run's rows are others, but as many
+        optimizer.optimize(document, lambda x, shift=shift: x["x"] + shift)
+        first = rows_of(samples)
+        optimizer.optimize(document | {"resume_optimization": True}, lambda x, shift=shift: x["x"] + shift)
+        assert rows_of(samples)[: len(first)] == first
+        assert len(rows_of(samples)) == len(first) + 1
+
+
+def test_going_on_says_nothing_of_the_function_that_is_the_same(tmp_path, caplog):
+    (tmp_path / "rows.csv").write_text("x,f\n1,1\n")
+    for _ in range(2):
+        optimizer.optimize(at(tmp_path / "run", earlier_evaluations=str(tmp_path / "rows.csv")), black_box)
+    assert not (tmp_path / "run.bak-1").exists()
+    assert "the function called was" not in caplog.text
+
+
+def black_box(configuration):
+    return configuration["x"] ** 2
+
+
 def test_batch_function_gets_lists(tmp_path):
     calls = []
 

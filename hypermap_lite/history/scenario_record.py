@@ -112,6 +112,18 @@ def check_scenario(
     _compare_versions(versions if isinstance(versions, dict) else {}, versions_in_use(function))
 
 
+def is_of_scenario(path: Path, canonical: Mapping[str, Any]) -> bool:
+    """Tell, without a word, whether a run folder's ``scenario.json`` passes `check_scenario`; True if there is none."""
+    if not path.exists():
+        return True
+    try:
+        recorded = _read(path)
+    except RunFolderError:
+        return False
+    recorded.pop("versions", None)
+    return not any(differing(recorded, _plain(canonical)))
+
+
 def _around_difference(old: str, new: str) -> tuple[str, str]:
     """Cut two long texts to what surrounds the first character in which they differ."""
     common = next((i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
