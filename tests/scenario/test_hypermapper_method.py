@@ -104,6 +104,16 @@ def test_iterations_come_on_top_of_what_a_run_resumes_from(folder: Path, rows: i
     assert document["output"]["directory"] == f"demo_run_after_{rows}"
 
 
+def test_rows_that_failed_do_not_count_as_what_a_run_resumes_from(folder: Path) -> None:
+    (folder / "history.csv").write_text(
+        "x1,x2,cost,state\n1,1,2,completed\n2,1,,failed\n3,1,,timeout\n4,1,2,infeasible\n"
+    )
+    changes = {"resume_optimization": True, "resume_optimization_data": "history.csv", "optimization_iterations": 4}
+    document = translated(**changes, design_of_experiment={"number_of_samples": 1})
+    assert document["budget"]["evaluations"] == 2 + 4
+    assert document["output"]["directory"] == "demo_run_after_2"
+
+
 def test_a_missing_file_to_resume_from_is_an_error(folder: Path) -> None:
     with pytest.raises(ScenarioError, match=r"resume_optimization_data: there is no file 'old.csv'"):
         translated(resume_optimization=True, resume_optimization_data="old.csv")

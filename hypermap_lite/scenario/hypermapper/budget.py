@@ -8,7 +8,7 @@ from typing import Any, Final
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.scenario.defaults import has_priors
 from hypermap_lite.scenario.hypermapper.draft import Draft, Note
-from hypermap_lite.scenario.hypermapper.files import earlier_rows, resumed_file
+from hypermap_lite.scenario.hypermapper.files import earlier_rows, n_usable, resumed_file
 from hypermap_lite.scenario.hypermapper.method import family
 
 GRID_LEVELS: Final = 10
@@ -121,9 +121,10 @@ def _translate_resumption(draft: Draft) -> int:
         return 0
     key, file = resumed_file(draft)
     draft.set("earlier_evaluations", draft.file(file), key)
-    text = f"{file} has {len(table.records)} evaluations now; the iterations come on top, and the priors' decay goes on"
+    n = n_usable(table)
+    text = f"{file} has {n} evaluations now; the iterations come on top, and the priors' decay goes on"
     draft.note("resume_optimization", text)
-    return len(table.records)
+    return n
 
 
 def grid_size(draft: Draft) -> int:

@@ -16,6 +16,9 @@ FILE_DEFAULTS: Final = {"output_data_file": "output_samples.csv", "output_pareto
 MODES: Final = "default, client-server, exhaustive"
 """Modes that there are here too."""
 
+FAILED: Final = ("failed", "timeout")
+"""States of evaluations that are not taken over."""
+
 RUN_FOLDER: Final = "run"
 """End of the run folder's name."""
 
@@ -49,7 +52,7 @@ def translate_output(draft: Draft) -> None:
     old = earlier_rows(draft)
     if old is not None:
         # One folder per starting point: resuming from one's own, growing output file never meets an old run's folder.
-        folder += f"_after_{len(old.records)}"
+        folder += f"_after_{n_usable(old)}"
     draft.set("output.directory", in_run_directory(draft, folder), "run_directory")
     for key, ours in (("output_data_file", "samples_file"), ("output_pareto_file", "pareto_file")):
         draft.set(f"output.{ours}", in_run_directory(draft, _file_name(draft, key)), key)
@@ -123,6 +126,12 @@ def earlier_rows(draft: Draft) -> Table | None:
         return read_table(path, file)
     except ScenarioError as error:
         raise error.below(f"$.{key}") from None
+
+
+def n_usable(table: Table) -> int:
+    """Return how many rows of a table a run takes over: all but those that a ``history.csv`` says have failed."""
+    states = table.column("state") if "state" in table.header else []
+    return len(table.records) - sum(state in FAILED for state in states)
 
 
 def resumed_file(draft: Draft) -> tuple[str, str]:
