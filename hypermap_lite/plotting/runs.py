@@ -132,6 +132,9 @@ def load_run(source: Source, *, label: str = "") -> Run:
     path = Path(source)
     history_file = path if path.suffix == ".csv" and not path.is_dir() else path / "history.csv"
     folder = history_file.parent
+    if history_file.is_file() and history_file == path and not (folder / "scenario.json").exists():
+        what = "no scenario.json is beside it, so it is not known what its columns mean"
+        raise RunFolderError(f"{path}: {what}. Say it with --scenario or --objectives")
     scenario = read_scenario(folder / "scenario.json")
     objectives = objectives_of(scenario, folder / "scenario.json")
     columns, rows = read_rows(history_file, required=["state", *(o.name for o in objectives)])

@@ -84,7 +84,7 @@ def test_kinds_draw_samples_files(samples, kind):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["pareto", "branin_output_samples.csv"], "or a samples file with --scenario or --objectives"),
+        (["pareto", "branin_output_samples.csv"], "branin_output_samples.csv: no scenario.json is beside it"),
         (["plot", "pareto", "branin_output_samples.csv", "--objectives", "Value,Cost"], "no column 'Cost'; found"),
         (["plot", "parameters", "branin_output_samples.csv", "--objectives", "Value"], "give the scenario with --sce"),
         (["plot", "prior", "branin_output_samples.csv", "--objectives", "Value"], "draws the prior of a run folder"),
