@@ -19,7 +19,10 @@ from hypermap_lite.space.search_space import SearchSpace
 
 logger = logging.getLogger(__name__)
 
-ADVICE: Final = "\n  hint: Everything that was read before is kept; the same scenario asks for the rest."
+ADVICE: Final = (
+    "\n  hint: Everything that was read before is kept; `python -m hypermap_lite SCENARIO` asks for the rest, "
+    "`hypermapper SCENARIO` begins anew."
+)
 
 GOODBYE_SECONDS: Final = 5.0
 """How long a client may take to read the last line [s]."""

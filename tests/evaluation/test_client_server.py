@@ -148,3 +148,10 @@ def test_end_is_one_line_and_a_client_that_is_gone_no_error():
     os.close(inbox)
     executor.say_goodbye()
     os.close(outbox)
+
+
+def test_error_says_which_command_goes_on_and_which_begins_anew(tmp_path):
+    with pytest.raises(ClientError) as caught:
+        list(exchange(tmp_path, Client("x,n,f\n0.1,1,5\n")))
+    hint = "`python -m hypermap_lite SCENARIO` asks for the rest, `hypermapper SCENARIO` begins anew"
+    assert hint in str(caught.value)
