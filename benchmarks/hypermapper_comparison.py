@@ -4,12 +4,12 @@
 
 PYTHON is an interpreter with HyperMapper installed, of an environment of its own, for HyperMapper needs old releases:
 
-    python3.11 -m venv /tmp/hypermapper
-    /tmp/hypermapper/bin/pip install setuptools==79.0.1 wheel cython
-    /tmp/hypermapper/bin/pip install numpy==1.26.4 scipy==1.12.0 pandas==2.1.4 scikit-learn==1.3.2 matplotlib==3.7.5 \
+    python3.11 -m venv ~/hypermapper
+    ~/hypermapper/bin/pip install setuptools==79.0.1 wheel cython
+    ~/hypermapper/bin/pip install numpy==1.26.4 scipy==1.12.0 pandas==2.1.4 scikit-learn==1.3.2 matplotlib==3.7.5 \
         cma==4.5.0 jsonschema==4.26.0 pyDOE==0.9.3
-    /tmp/hypermapper/bin/pip install --no-build-isolation paramz==0.9.6 GPy==1.13.2
-    /tmp/hypermapper/bin/pip install --no-deps hypermapper==2.2.13
+    ~/hypermapper/bin/pip install --no-build-isolation paramz==0.9.6 GPy==1.13.2
+    ~/hypermapper/bin/pip install --no-deps hypermapper==2.2.13
 
 Both get the files of `example_scenarios/hypermapper/` with either model, and run in turn on one core. Seconds are those
 of the whole run without its start and without the black box, per suggestion after the initial design. A run that has
