@@ -7,7 +7,6 @@ ignored. It is read once, when the run begins: from then on its rows stand in th
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
@@ -19,7 +18,7 @@ from hypermap_lite.objectives import Objective
 from hypermap_lite.scenario.feasibility_column import FeasibilityColumn, usual_feasibility
 from hypermap_lite.scenario.messages import enumerate_names
 from hypermap_lite.scenario.model import Scenario
-from hypermap_lite.scenario.table import Table, read_table
+from hypermap_lite.scenario.table import Table, find_file, read_table
 from hypermap_lite.space import Parameter, SearchSpace
 from hypermap_lite.typing import Value
 
@@ -97,13 +96,7 @@ def rows_of(
 
 def _open(file: str, folders: Sequence[Path]) -> Table:
     """Read a CSV file, or the history of a run folder, from the first folder that has it."""
-    written = Path(os.path.expanduser(file))
-    path = next((folder / written for folder in folders if (folder / written).exists()), None)
-    if path is None:
-        places = dict.fromkeys((folder / written).parent for folder in folders)
-        others = [other.name for place in places if place.is_dir() for other in place.iterdir()]
-        allowed = "a CSV file or run folder, relative to the file that says it or to the working directory"
-        raise ScenarioError("$", f"there is no file '{file}'", allowed=allowed, hint=nearest(written.name, others))
+    path = find_file(file, folders)
     if path.is_dir():
         return read_table(path / "history.csv", str(Path(file) / "history.csv"))
     return read_table(path, file)

@@ -6,7 +6,6 @@ They are read once, when a scenario is loaded, and are part of it from then on. 
 from __future__ import annotations
 
 import math
-import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +19,7 @@ from hypermap_lite.scenario.consistency import names_in
 from hypermap_lite.scenario.defaults import has_belief
 from hypermap_lite.scenario.messages import enumerate_names
 from hypermap_lite.scenario.sources import Layer, folders_of
-from hypermap_lite.scenario.table import Table, read_table
+from hypermap_lite.scenario.table import Table, find_file, read_table
 from hypermap_lite.typing import BoolArray, FloatArray, Value
 
 ROUNDING: Final = 1e-9
@@ -92,13 +91,7 @@ def _read(
 
 def _open(file: str, rows: str, folders: Sequence[Path]) -> Table:
     """Read a CSV file, or that of a run folder, from the first folder that has it."""
-    written = Path(os.path.expanduser(file))
-    path = next((folder / written for folder in folders if (folder / written).exists()), None)
-    if path is None:
-        places = dict.fromkeys((folder / written).parent for folder in folders)
-        others = [other.name for place in places if place.is_dir() for other in place.iterdir()]
-        allowed = "a CSV file or run folder, relative to the file that says it or to the working directory"
-        raise ScenarioError("$", f"there is no file '{file}'", allowed=allowed, hint=nearest(written.name, others))
+    path = find_file(file, folders)
     if not path.is_dir():
         return read_table(path, file)
     wanted = ["pareto.csv", "history.csv"] if rows == "non_dominated" else ["history.csv"]

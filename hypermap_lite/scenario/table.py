@@ -5,11 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import logging
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hypermap_lite.errors import ScenarioError
+from hypermap_lite.errors import ScenarioError, nearest
 
 logger = logging.getLogger(__name__)
 
@@ -34,6 +35,24 @@ class Table:
         """Return the texts of one column, without blanks around them."""
         j = self.header.index(name)
         return [record[j].strip() for record in self.records]
+
+
+def find_file(file: str, folders: Sequence[Path]) -> Path:
+    """Return where a CSV file or run folder is that a scenario names: in the first of some folders that has it.
+
+    Raises
+    ------
+    ScenarioError
+        If none has it; the message offers the nearest name.
+    """
+    written = Path(os.path.expanduser(file))
+    path = next((folder / written for folder in folders if (folder / written).exists()), None)
+    if path is None:
+        places = dict.fromkeys((folder / written).parent for folder in folders)
+        others = [other.name for place in places if place.is_dir() for other in place.iterdir()]
+        allowed = "a CSV file or run folder, relative to the file that says it or to the working directory"
+        raise ScenarioError("$", f"there is no file '{file}'", allowed=allowed, hint=nearest(written.name, others))
+    return path
 
 
 def read_table(path: Path, name: str) -> Table:
