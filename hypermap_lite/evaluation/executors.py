@@ -24,7 +24,7 @@ GRACE_SECONDS: Final = 2.0
 GRACE_STEP: Final = 0.02
 """Time between two looks at a call that was told to stop [s]."""
 
-BURIAL_SECONDS: Final = 1.0
+BURIAL_SECONDS: Final = 5.0
 """How long a worker whose pipe has closed may take to end, so that it is known how it ended [s]."""
 
 
