@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -173,17 +173,25 @@ class SearchSpace:
 
     def keys(self, X: FloatArray) -> list[bytes]:
         """Return a hashable name of each of n points, equal for points that are the same configuration."""
+        return [row.tobytes() for row in self._names(X)]
+
+    def _names(self, X: FloatArray) -> FloatArray:
+        """Return numbers that are equal, bit by bit, for points that are the same configuration, shape (n, d)."""
         names = np.round(X, KEY_DECIMALS) + 0.0  # no negative zeros
         for j, parameter in enumerate(self.parameters):
             if parameter.n_levels is not None:
                 names[:, j] = parameter.level_index(X[:, j])
-        return [row.tobytes() for row in names]
+        return names
 
-    def unseen(self, X: FloatArray, seen: Iterable[bytes]) -> BoolArray:
+    def unseen(self, X: FloatArray, seen: Collection[bytes]) -> BoolArray:
         """Tell which of n points are neither among the seen keys nor a repeat of an earlier row, shape (n,)."""
+        new = np.ones(len(X), dtype=bool)
+        names = self._names(X)
+        both = np.vstack([np.frombuffer(b"".join(seen)).reshape(-1, self.dimension), names])
+        _, first, counts = np.unique(_fingerprints(both), return_inverse=True, return_counts=True)
         known = set(seen)
-        new = np.zeros(len(X), dtype=bool)
-        for i, key in enumerate(self.keys(X)):
+        for i in np.flatnonzero(counts[first][len(seen) :] > 1):  # all others differ from every other row
+            key = names[i].tobytes()
             new[i] = key not in known
             known.add(key)
         return new
@@ -221,6 +229,14 @@ class SearchSpace:
     def sample_uniform(self, n: int, rng: Rng) -> FloatArray:
         """Draw n points uniformly (each level of a discrete axis by the width of its bin), shape (n, d)."""
         return self.draw(n, lambda k: rng.random((k, self.dimension)))
+
+
+def _fingerprints(names: FloatArray) -> npt.NDArray[np.uint64]:
+    """Return a number for each of n rows, equal for equal rows and hardly ever for others, shape (n,)."""
+    bits = np.ascontiguousarray(names).view(np.uint64)
+    mixed = (bits ^ (bits >> np.uint64(29))) * np.uint64(0xBF58476D1CE4E5B9)
+    factors = np.arange(1, 2 * names.shape[1], 2, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    return np.asarray(((mixed ^ (mixed >> np.uint64(32))) * factors).sum(axis=1, dtype=np.uint64))
 
 
 def _column(values: Sequence[Value]) -> npt.NDArray[Any]:

@@ -68,3 +68,15 @@ def test_neighbouring_integers_of_a_huge_range_are_different_points() -> None:
         space = SearchSpace((IntegerParameter(name="n", low=1, high=10**12, log=log),))
         a, b = space.keys(space.encode([{"n": 999_999_999_998}, {"n": 999_999_999_999}]))
         assert a != b
+
+
+@given(spaces(), st.integers(0, 2**32), st.integers(0, 40))
+def test_unseen_compares_every_pair_of_keys(space: SearchSpace, seed: int, n_seen: int) -> None:
+    rng = np.random.default_rng(seed)
+    X = np.round(space.sample_uniform(40, rng), 1)
+    seen = space.keys(X[rng.integers(0, 40, n_seen)])
+    known, expected = set(seen), []
+    for key in space.keys(X):
+        expected.append(key not in known)
+        known.add(key)
+    assert space.unseen(X, seen).tolist() == expected
