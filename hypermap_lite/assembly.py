@@ -19,9 +19,10 @@ from hypermap_lite.evaluation.python_function import PythonFunction
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers import MAXIMIZERS
 from hypermap_lite.optimizers import OPTIMIZERS, SEARCHES, Optimizer
-from hypermap_lite.optimizers.bayesian import BayesianOptimizer, Method
+from hypermap_lite.optimizers.bayesian import BayesianOptimizer
 from hypermap_lite.optimizers.fitness import Fitness, normalized_weights
 from hypermap_lite.optimizers.initial import InitialPhase
+from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.model_free import ModelFreeOptimizer
 from hypermap_lite.optimizers.sampling import SamplingOptimizer, SamplingPhase
 from hypermap_lite.priors import JOINT_PRIORS, PRIORS, AsJoint, Density, JointDensity, ProductPrior

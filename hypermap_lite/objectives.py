@@ -11,6 +11,9 @@ import numpy as np
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.typing import FloatArray
 
+MAX_CLOSED_FORM = 3
+"""Objectives for which the expected growth of the hypervolume is taken in closed form; more make too many cells."""
+
 
 class Goal(Enum):
     """Whether small or large values of an objective are wanted."""

@@ -8,11 +8,13 @@ from hypermap_lite.acquisition.bopro import Bopro
 from hypermap_lite.acquisition.expected_improvement import ExpectedImprovement
 from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighted, FeasibilityWeighting
 from hypermap_lite.acquisition.noisy_expected_improvement import NoisyExpectedImprovement
+from hypermap_lite.acquisition.noisy_hypervolume_improvement import NoisyExpectedHypervolumeImprovement
 from hypermap_lite.acquisition.prior_weighted import Pibo, PriorWeighted
 from hypermap_lite.acquisition.thompson_sampling import ThompsonSampling
 from hypermap_lite.acquisition.upper_confidence_bound import UpperConfidenceBound
 
 ACQUISITIONS: Final[Mapping[str, type[Acquisition]]] = {
+    "noisy_expected_hypervolume_improvement": NoisyExpectedHypervolumeImprovement,
     "noisy_expected_improvement": NoisyExpectedImprovement,
     "expected_improvement": ExpectedImprovement,
     "upper_confidence_bound": UpperConfidenceBound,
@@ -28,6 +30,7 @@ __all__ = [
     "ExpectedImprovement",
     "FeasibilityWeighted",
     "FeasibilityWeighting",
+    "NoisyExpectedHypervolumeImprovement",
     "NoisyExpectedImprovement",
     "Pibo",
     "PriorWeighted",

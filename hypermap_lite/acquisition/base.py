@@ -6,6 +6,7 @@ drawn at random is drawn once.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -35,6 +36,9 @@ class AcquisitionContext:
 
     normalization: Normalization
     rng: Rng
+    reference_point: FloatArray | None = None
+    """Worst objectives that still count, shape (m,); None if an objective has none."""
+
     iteration: int = 1
     """Running number, from 1, of the batch of model-based suggestions this one belongs to."""
 
@@ -56,11 +60,24 @@ class Scorer(Protocol):
         ...
 
 
+Rough = Callable[[FloatArray], FloatArray]
+"""Scores of n points, (n, d) to (n,), good enough to tell which of them deserve a closer look."""
+
+
+def rough_of(scorer: Scorer) -> Rough | None:
+    """Return a scorer's cheaper approximation, its `rough`; None if it has none."""
+    rough: Rough | None = getattr(scorer, "rough", None)
+    return rough
+
+
 class Acquisition(Protocol):
     """Options of an acquisition function."""
 
     is_logarithmic: ClassVar[bool]
     """Whether its scores are logarithms of a positive utility, so that a product is a sum."""
+
+    is_scalarizing: ClassVar[bool]
+    """Whether it looks at one trade-off of several objectives at a time, by the scalarization and its weights."""
 
     def scorer(self, context: AcquisitionContext) -> Scorer:
         """Become the scorer of one suggestion."""

@@ -28,10 +28,14 @@ class ExpectedImprovement:
     samples: int = 64
     """Joint samples, used with a scalarization that is not linear."""
 
+    screening: int = 8
+    """Samples that choose, of all candidates, those that are scored in full; 0 scores all of them in full."""
+
     is_logarithmic: ClassVar[bool] = True
+    is_scalarizing: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        check_samples(self.samples)
+        check_samples(self.samples, self.screening)
 
     def scorer(self, context: AcquisitionContext) -> Scorer:
         """Become the scorer of one suggestion."""
@@ -55,11 +59,14 @@ class ExpectedImprovement:
             scalarization=context.scalarization,
             weights=context.weights,
             normalization=context.normalization,
+            screening=self.screening,
             is_differentiable=posterior.is_differentiable,
         )
 
 
-def check_samples(samples: int) -> None:
+def check_samples(samples: int, screening: int) -> None:
     """Raise a `ScenarioError` if there are too few samples."""
+    if screening < 0:
+        raise ScenarioError("$.screening", f"there are {screening} samples", allowed="an integer >= 0")
     if samples < 2:
         raise ScenarioError("$.samples", f"there are {samples} samples", allowed="an integer >= 2")

@@ -8,8 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Rough, Scorer, rough_of
 from hypermap_lite.acquisition.improvement import SMOOTHING, log_softplus
+from hypermap_lite.errors import ScenarioError
 from hypermap_lite.surrogates.base import Permutations, Posterior
 from hypermap_lite.surrogates.feasibility import FeasibilityModel, FeasibilityPosterior, ProbitProcess
 from hypermap_lite.typing import BoolArray, FloatArray
@@ -17,14 +18,28 @@ from hypermap_lite.typing import BoolArray, FloatArray
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeasibilityWeighting:
-    """The utility of a point counts with the probability that the point is feasible [1]_.
+    """The utility of a point counts with the probability that the point is feasible [1]_, to a power.
 
-    It says nothing as long as all evaluations have been feasible.
+    It says nothing as long as all evaluations have been feasible. The power 1 is the expected utility. It is too bold
+    where much is to be gained beyond the boundary, for of all points those are chosen whose probability is
+    overestimated most: on Chakong and Haimes' problem an eighth of what expected hypervolume improvement chose was
+    feasible. A larger power trusts less.
 
     References
     ----------
     .. [1] Gardner et al. Bayesian Optimization with Inequality Constraints. ICML 2014, eq. 5.
     """
+
+    exponent: float = 3.0
+    """Power of the probability, > 0."""
+
+    def __post_init__(self) -> None:
+        if not self.exponent > 0:
+            raise ScenarioError("$.exponent", f"the power is {self.exponent}", allowed="a number > 0")
+
+    def weigh(self, inner: Scorer, feasibility: FeasibilityPosterior) -> FeasibilityWeighted:
+        """Return a scorer in log form with the probability in it."""
+        return FeasibilityWeighted(inner=inner, feasibility=feasibility, exponent=self.exponent)
 
     def fit(
         self, X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray, permutations: Permutations
@@ -36,10 +51,11 @@ class FeasibilityWeighting:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeasibilityWeighted:
-    """A scorer in log form plus the log probability that a point is feasible."""
+    """A scorer in log form plus a multiple of the log probability that a point is feasible."""
 
     inner: Scorer
     feasibility: FeasibilityPosterior
+    exponent: float = 1.0
 
     @property
     def is_differentiable(self) -> bool:
@@ -48,13 +64,19 @@ class FeasibilityWeighted:
 
     def __call__(self, X: FloatArray) -> FloatArray:
         """Return the scores of n points, shape (n,)."""
-        return self.inner(X) + self.feasibility.log_probability(X)
+        return self.inner(X) + self.exponent * self.feasibility.log_probability(X)
+
+    @property
+    def rough(self) -> Rough | None:
+        """The cheaper approximation, if the inner scorer has one."""
+        inner = rough_of(self.inner)
+        return None if inner is None else lambda X: inner(X) + self.exponent * self.feasibility.log_probability(X)
 
     def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the scores, shape (n,), and their gradients, shape (n, d)."""
         score, gradient = self.inner.with_gradient(X)
         log_probability, slope = self.feasibility.log_probability_with_gradient(X)
-        return score + log_probability, gradient + slope
+        return score + self.exponent * log_probability, gradient + self.exponent * slope
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,6 +121,7 @@ class Improving:
 
     inner: Acquisition
     is_logarithmic: ClassVar[bool] = True
+    is_scalarizing: ClassVar[bool] = True
 
     def scorer(self, context: AcquisitionContext) -> LogImprovement:
         """Become the scorer of one suggestion."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import erfcx, log_ndtr
 
+from hypermap_lite.acquisition.base import Rough
 from hypermap_lite.scalarization.base import Normalization, Scalarization
 from hypermap_lite.surrogates.base import Conditional, Field
 from hypermap_lite.typing import FloatArray
@@ -119,10 +120,24 @@ class SampledImprovement:
     weights: FloatArray
     normalization: Normalization
     is_differentiable: bool
+    screening: int = 0
+    """Samples that tell which points are worth a closer look; 0 for all."""
 
     def __call__(self, X: FloatArray) -> FloatArray:
         """Return the log acquisition value at n points, shape (n,)."""
         return self._score(self.field(X))[0]
+
+    @property
+    def rough(self) -> Rough | None:
+        """The same over a few of the samples."""
+        return self._rough if 0 < self.screening < len(self.normal) else None
+
+    def _rough(self, X: FloatArray) -> FloatArray:
+        c, few = self.field(X), slice(self.screening)
+        mean = c.mean if len(c.mean) == 1 else c.mean[few]
+        std = c.std if len(c.std) == 1 else c.std[few]
+        part = replace(self, incumbents=self.incumbents[few], normal=self.normal[few])
+        return part._score(Conditional(mean=mean, std=std))[0]
 
     def _score(self, c: Conditional) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return the scores (n,), the normalized samples (E, n, m), improvements and log smooth improvements (E, n)."""

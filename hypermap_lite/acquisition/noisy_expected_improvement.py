@@ -32,10 +32,14 @@ class NoisyExpectedImprovement:
     samples: int = 64
     """Draws of the noise-free values; a forest has as many as trees instead."""
 
+    screening: int = 8
+    """Samples that choose, of all candidates, those that are scored in full; 0 scores all of them in full."""
+
     is_logarithmic: ClassVar[bool] = True
+    is_scalarizing: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        check_samples(self.samples)
+        check_samples(self.samples, self.screening)
 
     def scorer(self, context: AcquisitionContext) -> Scorer:
         """Become the scorer of one suggestion."""
@@ -56,5 +60,6 @@ class NoisyExpectedImprovement:
             scalarization=context.scalarization,
             weights=context.weights,
             normalization=context.normalization,
+            screening=self.screening,
             is_differentiable=context.posterior.is_differentiable,
         )

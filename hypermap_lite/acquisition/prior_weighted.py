@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
+from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Rough, Scorer, rough_of
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.typing import FloatArray
@@ -89,6 +89,12 @@ class PriorWeighted:
     def __call__(self, X: FloatArray) -> FloatArray:
         """Return the scores of n points, shape (n,)."""
         return self.inner(X) + self.weight * self.log_relative_density(X)
+
+    @property
+    def rough(self) -> Rough | None:
+        """The cheaper approximation, if the inner scorer has one."""
+        inner = rough_of(self.inner)
+        return None if inner is None else lambda X: inner(X) + self.weight * self.log_relative_density(X)
 
     def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the scores, shape (n,), and their gradients, shape (n, d)."""

@@ -23,6 +23,7 @@ class ThompsonSampling:
     """Random features of a drawn function; a forest draws a tree instead."""
 
     is_logarithmic: ClassVar[bool] = False
+    is_scalarizing: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.features < 1:

@@ -34,6 +34,7 @@ class UpperConfidenceBound:
     """
 
     is_logarithmic: ClassVar[bool] = False
+    is_scalarizing: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         is_number = isinstance(self.beta, int | float)

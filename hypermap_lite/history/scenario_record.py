@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from hypermap_lite import __version__
 from hypermap_lite.errors import RunFolderError
+from hypermap_lite.history.added_later import ADDED_LATER
 from hypermap_lite.history.files import write_atomically
 
 logger = logging.getLogger(__name__)
@@ -46,13 +47,6 @@ def _pattern(places: Iterable[str]) -> re.Pattern[str]:
 
 
 _FREE: Final = _pattern(MAY_DIFFER)
-
-ADDED_LATER: Final = {
-    "$.acquisition.feasibility_weighting.method": '"probability"',
-    "$.acquisition.weights.ends": "0",
-    "$.acquisition.weights.redraws": "0",
-}
-"""Options that scenarios of older versions did not have, and the default (as JSON) they are taken to have."""
 
 MEASURES: Final = ("$.objectives[*].reference_point",)
 """Parts of a scenario that decide how a finished run is measured; in a running one they also guide the search."""

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from hypermap_lite.acquisition.base import Scorer
+from hypermap_lite.acquisition.base import Scorer, rough_of
 from hypermap_lite.design.base import ENUMERATION_LIMIT
 from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.errors import ScenarioError
@@ -36,6 +36,10 @@ SEPARATION = 0.05
 """Starts are at least this far apart, in the largest coordinate difference."""
 
 
+CLOSER_LOOKS = 96
+"""Candidates whose scores are taken in full where there are cheaper ones."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MaximizationProblem:
     """Where to look for the best score."""
@@ -53,8 +57,21 @@ class MaximizationProblem:
 
     def score(self, X: FloatArray) -> FloatArray:
         """Return the scores of n points, shape (n,); what is not a number is the worst."""
-        scores = self.scorer(X)
-        return np.where(np.isnan(scores), -np.inf, scores)
+        return _numbers(self.scorer(X))
+
+    def score_candidates(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the points worth a closer look, shape (k, d), and their scores, shape (k,); all n if they are few.
+
+        Where the scorer has a cheaper approximation, that one chooses them.
+        """
+        rough = rough_of(self.scorer)
+        if rough is not None and len(X) > CLOSER_LOOKS:
+            X = X[np.sort(np.argsort(-_numbers(rough(X)), kind="stable")[:CLOSER_LOOKS])]
+        return X, self.score(X)
+
+
+def _numbers(scores: FloatArray) -> FloatArray:
+    return np.where(np.isnan(scores), -np.inf, scores)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -35,7 +35,7 @@ class LocalSearch:
         X = draw_candidates(problem, self.candidates)
         if not len(X):
             return None
-        scores = problem.score(X)
+        X, scores = problem.score_candidates(X)
         if problem.space.n_configurations <= self.candidates:
             return best_unseen(problem, X, scores)
         axes = np.ones(problem.space.dimension, dtype=bool)

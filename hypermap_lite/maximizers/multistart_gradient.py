@@ -59,7 +59,7 @@ class MultistartGradient:
         X = draw_candidates(problem, self.candidates)
         if not len(X):
             return None
-        scores = problem.score(X)
+        X, scores = problem.score_candidates(X)
         refined = choose_starts(X, scores, self.starts)
         stepped = np.ones_like(is_real) if problem.space.constraints else ~is_real
         for _ in range(ROUNDS if stepped.any() else 1):

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
-from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, PriorWeighting, Scorer
+from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
 from hypermap_lite.acquisition.feasibility_weighted import (
     FeasibilitySearch,
-    FeasibilityWeighted,
-    FeasibilityWeighting,
     Improving,
     optimistic_ideal,
 )
@@ -22,14 +18,17 @@ from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
-from hypermap_lite.maximizers.base import MaximizationProblem, Maximizer
+from hypermap_lite.maximizers.base import MaximizationProblem
 from hypermap_lite.objectives import reference_point_of
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.initial import InitialPhase
+from hypermap_lite.optimizers.method import Method
+from hypermap_lite.optimizers.models import Models
 from hypermap_lite.optimizers.streams import Stream, generator
+from hypermap_lite.pareto.ranking import crowding_distances, non_dominated_ranks
 from hypermap_lite.priors.product import ProductPrior
-from hypermap_lite.scalarization.base import Normalization, Scalarization, WeightSampling
-from hypermap_lite.surrogates.base import Posterior, Surrogate
+from hypermap_lite.scalarization.base import Normalization
+from hypermap_lite.surrogates.base import Posterior
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.typing import FloatArray, Rng
 
@@ -42,6 +41,9 @@ MIN_COMPLETED = 2
 MAX_INCUMBENTS = 8
 """Best points whose surroundings are searched."""
 
+MAX_FRONT_INCUMBENTS = 12
+"""The same, where the whole front is looked at."""
+
 IDEAL_POINTS = 512
 """Points at which the ideal values of a constrained problem are looked for."""
 
@@ -50,41 +52,6 @@ MAX_IDEAL_DRAWS = 8192
 
 NEXT_TO_NOTHING = math.log(1e-4)
 """Log expected improvement, in normalized objectives, below which a trade-off counts as found."""
-
-FIRST_MILESTONE = 8
-MILESTONE_GROWTH = 1.5
-"""Hyperparameters are fitted on the first 8, 12, 18, ... evaluations, each fit starting from the last.
-
-The warm start of any fit is that of the milestone below, never that of the last call, so it is a function of the
-history and a resumed run fits as the uninterrupted one did.
-"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Method:
-    """The replaceable parts of Bayesian optimization."""
-
-    surrogate: Surrogate
-    acquisition: Acquisition
-    scalarization: Scalarization
-    weights: WeightSampling
-    prior_weighting: PriorWeighting | None
-    """None leaves the prior out of the acquisition."""
-
-    feasibility_weighting: FeasibilityWeighting | None
-    """None leaves infeasible evaluations out of the acquisition."""
-
-    maximizer: Maximizer
-    fallback: InitialDesign
-    """Draws a point where there is nothing to model yet."""
-
-    epsilon: float = 0.0
-    """Probability that a suggestion is drawn uniformly instead: a way out of a misleading prior or model [1]_.
-
-    References
-    ----------
-    .. [1] Nardi, Koeplinger, Olukotun. Practical Design Space Exploration. MASCOTS 2019 (HyperMapper).
-    """
 
 
 class BayesianOptimizer(Optimizer):
@@ -126,13 +93,11 @@ class BayesianOptimizer(Optimizer):
         self._budget = budget
         self._batch_size = batch_size
         self._seed = seed
-        self._warm_starts: dict[int, Any] = {}
-        self._posterior_of: tuple[int, Posterior] | None = None
-        self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
+        self._models = Models(history, method.surrogate, method.feasibility_weighting, seed)
 
     def posterior(self) -> Posterior:
         """Return what the surrogate knows after the completed evaluations, of which there must be one."""
-        return self._posterior(self.history.X(), self.history.Y())
+        return self._models.posterior()
 
     def _suggest(self, trial: int) -> Suggestion | None:
         if trial < len(self._initial):
@@ -143,7 +108,7 @@ class BayesianOptimizer(Optimizer):
                 return self._drawn_by(RandomSampling(), trial, rng)
         rng = generator(self._seed, Stream.SUGGESTION, trial)
         has_objectives = len(self.history.completed) >= MIN_COMPLETED
-        feasibility = self._feasibility(is_searching=not has_objectives)
+        feasibility = self._models.feasibility(searching=None if has_objectives else self.in_flight)
         if has_objectives:
             return self._with_model(trial, rng, feasibility)
         if feasibility is not None:
@@ -161,7 +126,8 @@ class BayesianOptimizer(Optimizer):
 
     def _with_model(self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None) -> Suggestion | None:
         """Return the best point at a drawn trade-off; weights at which none promises anything may be drawn again."""
-        n_draws = 1 + self._method.weights.redraws * (len(self.history.objectives) > 1)
+        has_weights = self._method.acquisition.is_scalarizing and len(self.history.objectives) > 1
+        n_draws = 1 + self._method.weights.redraws * has_weights
         best: tuple[float, Suggestion] | None = None
         context = self._context(rng, feasibility)
         for k in range(n_draws):
@@ -198,7 +164,8 @@ class BayesianOptimizer(Optimizer):
             scorer = acquisition.scorer(context)
         else:
             scorer = weighting.scorer(acquisition, context, self._prior, weight)
-        return scorer if feasibility is None else FeasibilityWeighted(inner=scorer, feasibility=feasibility)
+        by_feasibility = self._method.feasibility_weighting
+        return scorer if feasibility is None or by_feasibility is None else by_feasibility.weigh(scorer, feasibility)
 
     def _searching(self, feasibility: FeasibilityPosterior) -> Scorer:
         """Return the search for the first feasible points, with the prior where it counts."""
@@ -232,8 +199,9 @@ class BayesianOptimizer(Optimizer):
 
     def _context(self, rng: Rng, feasibility: FeasibilityPosterior | None) -> AcquisitionContext:
         X, Y = self.history.X(), self.history.Y()
-        normalization = Normalization.of_front(Y, reference_point_of(self.history.objectives))
-        posterior = self._posterior(X, Y)
+        reference_point = reference_point_of(self.history.objectives)
+        normalization = Normalization.of_front(Y, reference_point)
+        posterior = self._models.posterior()
         if feasibility is not None:
             normalization = normalization.reaching(self._ideal(posterior, feasibility, rng))
         return AcquisitionContext(
@@ -245,6 +213,7 @@ class BayesianOptimizer(Optimizer):
             weights=self._weights(normalization, rng),
             normalization=normalization,
             rng=rng,
+            reference_point=reference_point,
             iteration=1 + self._n_model_based() // self._batch_size,
         )
 
@@ -270,55 +239,15 @@ class BayesianOptimizer(Optimizer):
         n_in_all = self._budget - len(self._initial) + self._initial.n_beyond
         return self._method.prior_weighting.weight(1 + self._n_model_based(), max(n_in_all, 1))
 
-    def _feasibility(self, *, is_searching: bool) -> FeasibilityPosterior | None:
-        """Return what is known of the feasibility; None if no evaluation has been infeasible.
-
-        While there is nothing but this to go by, pending points count as infeasible, so that a batch spreads.
-        """
-        X, is_feasible = self.history.feasibility()
-        if self._method.feasibility_weighting is None or is_feasible.all():
-            return None
-        if self._feasibility_of is None or self._feasibility_of[0] != len(X) or is_searching:
-            pending = self.history.space.encode([s.configuration for s in self.in_flight if is_searching])
-            known = np.append(is_feasible, np.zeros(len(pending), dtype=bool))
-            space = self.history.space
-            posterior = self._method.feasibility_weighting.fit(
-                np.vstack([X, pending]), known, space.is_ordered, space.permutations
-            )
-            self._feasibility_of = (len(X), posterior)
-        return self._feasibility_of[1]
-
     def _incumbents(self, context: AcquisitionContext) -> FloatArray:
-        """Return the observed points of best predicted scalarization, shape (k, d), best first."""
+        """Return the observed points worth refining, shape (k, d), best first by their predicted means.
+
+        Those of the best scalarization, or those of the front, the loneliest first.
+        """
         mean = context.posterior.predict(context.X).mean
-        scalars = context.scalarization(context.normalization(mean), context.weights)
-        return context.X[np.argsort(scalars, kind="stable")[:MAX_INCUMBENTS]]
-
-    def _posterior(self, X: FloatArray, Y: FloatArray) -> Posterior:
-        """Return the posterior given all completed evaluations; the same object until there are more."""
-        if self._posterior_of is None or self._posterior_of[0] != len(X):
-            self._posterior_of = (len(X), self._fit(X, Y))
-        return self._posterior_of[1]
-
-    def _fit(self, X: FloatArray, Y: FloatArray) -> Posterior:
-        start = None
-        for k in milestones(len(X)) if self._method.surrogate.starts_warm else ():
-            if k not in self._warm_starts:
-                self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start).hyperparameters
-            start = self._warm_starts[k]
-        return self._fit_from(X, Y, start)
-
-    def _fit_from(self, X: FloatArray, Y: FloatArray, start: Any) -> Posterior:
-        rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
-        space = self.history.space
-        return self._method.surrogate.fit(
-            X, Y, is_ordered=space.is_ordered, rng=rng, start=start, permutations=space.permutations
-        )
-
-
-def milestones(n: int) -> Iterator[int]:
-    """Yield the numbers of evaluations below n whose fits start the later ones."""
-    k = float(FIRST_MILESTONE)
-    while k < n:
-        yield int(k)
-        k *= MILESTONE_GROWTH
+        if self._method.acquisition.is_scalarizing or mean.shape[1] == 1:
+            scalars = context.scalarization(context.normalization(mean), context.weights)
+            return context.X[np.argsort(scalars, kind="stable")[:MAX_INCUMBENTS]]
+        ranks = non_dominated_ranks(mean)
+        order = np.lexsort((-crowding_distances(mean, ranks), ranks))
+        return context.X[order[:MAX_FRONT_INCUMBENTS]]

@@ -14,6 +14,9 @@ SAMPLES_PER_PARAMETER = 2
 MIN_SAMPLES = 6
 """Points of the smallest default design."""
 
+SCALARIZING: Final = "noisy_expected_improvement"
+"""Acquisition function where a scalarization or its weights are given, and no type."""
+
 BEGINNING: Final[Mapping[str, str]] = {"local_search": "random_points", "evolutionary": "population_size"}
 """Optimizers that begin with a number of points of their own, and the option that says how many."""
 
@@ -32,6 +35,19 @@ def fill(schema: Schema, value: Any) -> Any:
     if "integer" in schema.get("type", ()) and isinstance(value, float):
         return int(value)
     return value
+
+
+def fill_implied(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a document with what the user's own keys imply, before the schema's defaults are filled in.
+
+    Who says how several objectives are scalarized wants them scalarized: the default acquisition function would not.
+    """
+    acquisition = document.get("acquisition")
+    if not isinstance(acquisition, Mapping) or acquisition.get("type"):
+        return dict(document)
+    if not (acquisition.get("scalarization") or acquisition.get("weights")):
+        return dict(document)
+    return {**document, "acquisition": {**acquisition, "type": SCALARIZING}}
 
 
 def fill_derived(document: Mapping[str, Any]) -> dict[str, Any]:

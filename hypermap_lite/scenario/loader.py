@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from hypermap_lite.errors import ScenarioError
+from hypermap_lite.history.added_later import of_older_version
 from hypermap_lite.scenario.building import build_scenario
 from hypermap_lite.scenario.consistency import check_consistency
-from hypermap_lite.scenario.defaults import fill, fill_derived, has_priors
+from hypermap_lite.scenario.defaults import fill, fill_derived, fill_implied, has_priors
 from hypermap_lite.scenario.hypermapper import Note, Translation, hypermappers_key, is_hypermapper, translate
 from hypermap_lite.scenario.merging import apply_override, bases_of, merge, merge_layers, read_layers
 from hypermap_lite.scenario.messages import check_document
@@ -113,7 +114,7 @@ def _translation_of(layer: Layer) -> Translation | None:
 
 def _translated(layer: Layer, translation: Translation | None) -> Layer:
     if translation is None:
-        return layer
+        return replace(layer, document=of_older_version(layer.document))
     return replace(layer, document=translation.document, places=translation.places)
 
 
@@ -129,7 +130,7 @@ def complete_document(document: Mapping[str, Any]) -> dict[str, Any]:
     if document.get("preset"):
         preset = PRESETS[document["preset"]](has_priors=has_priors(document))
         document = merge(root_schema(), preset, document)
-    complete = fill_derived(fill(root_schema(), document))
+    complete = fill_derived(fill(root_schema(), fill_implied(document)))
     check_consistency(complete)
     return complete
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
@@ -16,9 +17,16 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
     return {
         "design_of_experiment": {"type": "prior_sampling" if has_priors else "random_sampling"},
         "optimizer": {"type": "bayesian"},
-        "surrogate": {"type": "gaussian_process"},
+        "surrogate": {
+            "type": "gaussian_process",
+            "noise_floor": 1e-6,
+            "lengthscale_location": math.sqrt(2.0),
+            "lengthscale_width": math.sqrt(3.0),
+            "restart": True,
+        },
         "acquisition": {
             "type": "noisy_expected_improvement",
+            "screening": 0,
             "scalarization": {"type": "linear"},
             "weights": {"type": "dirichlet", "alpha": 1.0},
             "prior_weighting": {"method": "pibo", "floor": 1e-6},

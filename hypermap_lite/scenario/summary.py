@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from hypermap_lite.objectives import MAX_CLOSED_FORM
 from hypermap_lite.scenario.model import ComponentSpec, OutputSpec, ParameterSpec, Scenario
 from hypermap_lite.typing import as_argument
 
@@ -128,16 +129,27 @@ def _method(scenario: Scenario) -> list[str]:
         lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
     if epsilon := scenario.optimizer.options.get("epsilon"):
         lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
-    if m > 1:
-        weights = f"{_component(acquisition.scalarization)} with weights from {_component(acquisition.weights)}"
-        lines.append(f"{m} objectives: {weights}")
-    else:
-        lines.append("one objective: no scalarization")
+    lines.append(_trade_offs(scenario))
     if acquisition.feasibility_weighting is None:
         lines.append("infeasible evaluations: not in the acquisition (feasibility_weighting is none)")
     elif scenario.feasible_output is not None:
         lines.append("acquisition weighted by the probability of being feasible")
     return [*lines, _prior_use(scenario)]
+
+
+def _trade_offs(scenario: Scenario) -> str:
+    """Say how several objectives are weighed against each other."""
+    acquisition, m = scenario.acquisition, len(scenario.objectives)
+    is_hypervolume = acquisition.function.type == "noisy_expected_hypervolume_improvement"
+    if m == 1:
+        return "one objective: " + ("noisy expected improvement" if is_hypervolume else "no scalarization")
+    if not is_hypervolume:
+        weights = f"{_component(acquisition.scalarization)} with weights from {_component(acquisition.weights)}"
+        return f"{m} objectives: {weights}"
+    how = "all trade-offs at once" if m <= MAX_CLOSED_FORM else "noisy expected improvement in random directions"
+    missing = [o.name for o in scenario.objectives if o.reference_point is None]
+    corner = f"inferred from the front (none given for {', '.join(missing)})" if missing else "as given"
+    return f"{m} objectives: {how}; reference point {corner}"
 
 
 def _prior_use(scenario: Scenario) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -9,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.special import ndtri
 
+from hypermap_lite.errors import ScenarioError
 from hypermap_lite.surrogates.base import (
     NO_PERMUTATIONS,
     Conditional,
@@ -41,7 +43,35 @@ class GaussianProcess:
     noise: bool = True
     """Whether evaluations are noisy; the noise is then learned."""
 
+    restart: bool = False
+    """Whether every fit starts from the mode of the priors too, not only where there is no earlier fit to start from.
+
+    The optimum changes little from one evaluation to the next, and the earlier fits have started from the mode.
+    """
+
+    noise_floor: float = 1e-10
+    """Smallest variance of the noise, as a share of the outputs' variance, > 0; of a model without noise, all of it.
+
+    It limits how close to the optimum of a black box without noise the search can come.
+    """
+
+    lengthscale_location: float = -0.5
+    """Mean of the prior on a log lengthscale in one dimension; 0.5 log(d) is added in d dimensions."""
+
+    lengthscale_width: float = 0.7
+    """Standard deviation of that prior, > 0."""
+
     starts_warm: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        if not 0 < self.noise_floor <= 1:
+            raise ScenarioError("$.noise_floor", f"the floor is {self.noise_floor}", allowed="a number > 0, at most 1")
+        if not math.isfinite(self.lengthscale_location):
+            problem = f"the location is {self.lengthscale_location}"
+            raise ScenarioError("$.lengthscale_location", problem, allowed="a finite number")
+        if not 0 < self.lengthscale_width < math.inf:
+            problem = f"the width is {self.lengthscale_width}"
+            raise ScenarioError("$.lengthscale_width", problem, allowed="a number > 0")
 
     def fit(
         self,
@@ -55,11 +85,19 @@ class GaussianProcess:
     ) -> Posterior:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
         outputs = [Standardized.of(column) for column in Y.T]
-        prior = HyperPrior(X.shape[1], has_noise=self.noise)
+        prior = HyperPrior(
+            X.shape[1],
+            has_noise=self.noise,
+            noise_floor=self.noise_floor,
+            lengthscale_location=self.lengthscale_location,
+            lengthscale_sigma=self.lengthscale_width,
+        )
         processes = []
         for k, output in enumerate(outputs):
             likelihood = MarginalLikelihood(X, output.values, is_ordered, prior, permutations)
-            starts = [prior.mode()] if start is None else [start[k], prior.mode()]
+            starts = [] if start is None else [start[k]]
+            if start is None or self.restart:
+                starts.append(prior.mode())
             best = fit_hyperparameters(likelihood, starts)
             processes.append(Process.condition(X, output, best, is_ordered, permutations))
         return GaussianProcessPosterior(processes=tuple(processes))

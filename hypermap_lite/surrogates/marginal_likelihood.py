@@ -19,9 +19,6 @@ logger = logging.getLogger(__name__)
 
 LENGTHSCALE_BOUNDS = (0.01, 100.0)
 OUTPUT_VARIANCE_BOUNDS = (0.01, 100.0)
-NOISE_FLOOR = 1e-6
-"""Smallest noise variance, in units of the standardized outputs; also that of a model without noise."""
-
 NOISE_CEILING = 4.0
 MAX_ITERATIONS = 100
 REJECTED = 1e25
@@ -64,7 +61,13 @@ class HyperPrior:
 
     dimension: int
     has_noise: bool = True
+    lengthscale_location: float = math.sqrt(2.0)
+    """Mean of the log lengthscale in one dimension."""
+
     lengthscale_sigma: float = math.sqrt(3.0)
+    noise_floor: float = 1e-6
+    """Smallest noise variance, in units of the standardized outputs; also that of a model without noise."""
+
     noise_mu: float = -4.0
     noise_sigma: float = 2.0
     output_sigma: float = 2.0
@@ -72,17 +75,17 @@ class HyperPrior:
     @property
     def lengthscale_mu(self) -> float:
         """Location of the lengthscale prior."""
-        return math.sqrt(2.0) + 0.5 * math.log(self.dimension)
+        return self.lengthscale_location + 0.5 * math.log(self.dimension)
 
     def mode(self) -> Hyperparameters:
         """Return the most likely hyperparameters before any data."""
         lengthscale = math.exp(self.lengthscale_mu - self.lengthscale_sigma**2)
-        noise = math.exp(self.noise_mu - self.noise_sigma**2) if self.has_noise else NOISE_FLOOR
+        noise = math.exp(self.noise_mu - self.noise_sigma**2) if self.has_noise else self.noise_floor
         return Hyperparameters(np.full(self.dimension, lengthscale), 1.0, noise)
 
     def bounds(self) -> FloatArray:
         """Return the bounds of the log hyperparameters, shape (d + 2, 2)."""
-        noise = (NOISE_FLOOR, NOISE_CEILING) if self.has_noise else (NOISE_FLOOR, NOISE_FLOOR)
+        noise = (self.noise_floor, NOISE_CEILING if self.has_noise else self.noise_floor)
         return np.log(np.array([*[LENGTHSCALE_BOUNDS] * self.dimension, OUTPUT_VARIANCE_BOUNDS, noise]))
 
     def penalty(self, theta: FloatArray) -> tuple[float, FloatArray]:

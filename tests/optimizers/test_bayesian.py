@@ -10,7 +10,7 @@ from hypermap_lite.assembly import build_optimizer
 from hypermap_lite.design import DESIGNS
 from hypermap_lite.maximizers import MAXIMIZERS
 from hypermap_lite.maximizers.base import MaximizationProblem, Maximum
-from hypermap_lite.optimizers.bayesian import milestones
+from hypermap_lite.optimizers.models import milestones
 from hypermap_lite.pareto.hypervolume import hypervolume
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS
 from hypermap_lite.scenario.loader import load_scenario

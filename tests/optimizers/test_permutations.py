@@ -181,7 +181,7 @@ def test_what_is_feasible_is_learned_from_orders_that_are_alike(kernel: str) -> 
         return Evaluation(suggestion=suggestion, state=state, values={"near": 1.0, "far": float(order[-1])})
 
     optimizer.tell([judged(s) for s in optimizer.ask(30)])
-    posterior = optimizer._feasibility(is_searching=False)
+    posterior = optimizer._models.feasibility()
     space = optimizer.history.space
     X = space.sample_uniform(400, np.random.default_rng(1))
     truth = np.array([is_feasible(c["order"]) for c in space.decode(X)])

@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.scenario import load_scenario
-from hypermap_lite.scenario.model import ComponentSpec
 from tests.scenario.bad_scenarios import BAD, GOOD, Bad
 
 FOUND_BY_LOADING = {name: bad for name, bad in BAD.items() if bad.when_loaded}
@@ -49,7 +48,9 @@ def test_defaults_fill_a_minimal_scenario() -> None:
     assert scenario.budget.evaluations == 50
     assert scenario.design.type == "sobol"
     assert scenario.design.number_of_samples == 8
-    assert scenario.surrogate == ComponentSpec(type="gaussian_process", options={"noise": True}, path="$.surrogate")
+    assert (scenario.surrogate.type, scenario.surrogate.path) == ("gaussian_process", "$.surrogate")
+    assert scenario.surrogate.options["noise"] is True
+    assert scenario.acquisition.function.type == "noisy_expected_hypervolume_improvement"
     assert scenario.evaluator.component is None
     assert scenario.output.directory == "outputs/demo"
 
@@ -227,3 +228,10 @@ SCENARIOS = st.fixed_dictionaries(
 def test_any_scenario_loads_from_its_canonical_form(document: dict[str, Any]) -> None:
     scenario = load_scenario(document)
     assert load_scenario(json.loads(json.dumps(scenario.canonical))) == scenario
+
+
+@pytest.mark.parametrize("given", [{"scalarization": "linear"}, {"weights": {"alpha": 2}}])
+def test_who_gives_a_scalarization_gets_it(given: dict) -> None:
+    assert load_scenario(GOOD | {"acquisition": given}).acquisition.function.type == "noisy_expected_improvement"
+    spelt_out = {**given, "type": "noisy_expected_hypervolume_improvement"}
+    assert load_scenario(GOOD | {"acquisition": spelt_out}).acquisition.function.type == spelt_out["type"]

@@ -25,9 +25,20 @@ def test_every_parameter_has_a_line_with_bounds_scale_and_prior() -> None:
 def test_the_method_says_which_evaluations_are_chosen_how() -> None:
     text = page(budget={"evaluations": 20})
     assert "evaluations 1 to 8: sobol" in text
-    assert "evaluations 9 to 20: noisy_expected_improvement(samples=64) on a gaussian_process" in text
-    assert "2 objectives: tchebyshev(rho=0.05) with weights from dirichlet(alpha=1)" in text
+    assert "evaluations 9 to 20: noisy_expected_hypervolume_improvement(samples=32, screening=8) on a gauss" in text
+    assert "2 objectives: all trade-offs at once; reference point inferred from the front (none given for cost," in text
     assert "no priors" in text
+
+
+def test_a_scalarization_is_named_with_its_weights() -> None:
+    text = page(acquisition={"scalarization": "tchebyshev"})
+    assert ": noisy_expected_improvement(samples=64, screening=8) on a gaussian_process" in text
+    assert "2 objectives: tchebyshev(rho=0.05) with weights from dirichlet(alpha=1)" in text
+
+
+def test_the_hypervolume_of_many_objectives_is_looked_for_in_random_directions() -> None:
+    text = page(objectives=[{"name": f"f{k}", "reference_point": 1} for k in range(4)])
+    assert "4 objectives: noisy expected improvement in random directions; reference point as given" in text
 
 
 def test_the_beta_of_pibo_is_worked_out() -> None:
@@ -113,9 +124,7 @@ def test_a_search_is_shown_with_its_options_and_its_one_trade_off() -> None:
 def test_bopro_takes_the_place_of_the_acquisition_function() -> None:
     priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
     text = page(priors=priors, acquisition={"prior_weighting": "bopro"})
-    assert (
-        "bopro(model_weight=10, good_quantile=0.05, floor=0.01) takes the place of noisy_expected_improvement" in text
-    )
+    assert "bopro(model_weight=10, good_quantile=0.05, floor=0.01) takes the place of noisy_expected_hyp" in text
 
 
 def test_a_grid_of_given_levels_is_as_large_as_it_is() -> None:

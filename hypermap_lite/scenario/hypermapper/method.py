@@ -18,7 +18,7 @@ ACQUISITIONS: Final = {
     "UCB": "upper_confidence_bound",
     "TS": "thompson_sampling",
     "qLogNEI": "noisy_expected_improvement",
-    "qLogNEHVI": "noisy_expected_improvement",
+    "qLogNEHVI": "noisy_expected_hypervolume_improvement",
 }
 """Ours by HyperMapper's names, those of version 3 included."""
 
@@ -112,10 +112,9 @@ def _translate_acquisition(draft: Draft) -> None:
         draft.note(
             "acquisition_function", "a draw from the model, with either model; HyperMapper's was its mean, or EI"
         )
-    if name == "qLogNEHVI":
-        draft.note("acquisition_function", "here it is noisy expected improvement with random scalarizations")
-    if len(reading["optimization_objectives"]) == 1:
-        draft.unused(("scalarization_method", "weight_sampling", *BOX_KEYS), "with one objective")
+    if len(reading["optimization_objectives"]) == 1 or name == "qLogNEHVI":
+        reason = "with one objective" if len(reading["optimization_objectives"]) == 1 else "with qLogNEHVI"
+        draft.unused(("scalarization_method", "weight_sampling", *BOX_KEYS), reason)
         return
     if reading["scalarization_method"] == "modified_tchebyshev":
         draft.note("scalarization_method", "with expected improvement, HyperMapper had its sign wrong")

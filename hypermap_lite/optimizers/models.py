@@ -1,0 +1,100 @@
+"""What the history teaches: a model of the objectives, and one of the feasibility."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighting
+from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.history.history import History
+from hypermap_lite.optimizers.streams import Stream, generator
+from hypermap_lite.surrogates.base import Posterior, Surrogate
+from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
+from hypermap_lite.typing import FloatArray
+
+FIRST_MILESTONE = 8
+MILESTONE_GROWTH = 1.5
+"""Hyperparameters are fitted on the first 8, 12, 18, ... evaluations, each fit starting from the last.
+
+The warm start of any fit is that of the milestone below, never that of the last call, so it is a function of the
+history and a resumed run fits as the uninterrupted one did.
+"""
+
+
+class Models:
+    """Fits what is asked for once per length of the history.
+
+    Parameters
+    ----------
+    history
+        The evaluations; it may grow.
+    surrogate
+        Of the objectives.
+    feasibility_weighting
+        None leaves infeasible evaluations out.
+    seed
+        Of the scenario.
+    """
+
+    def __init__(
+        self, history: History, surrogate: Surrogate, feasibility_weighting: FeasibilityWeighting | None, seed: int
+    ) -> None:
+        self._history = history
+        self._surrogate = surrogate
+        self._feasibility_weighting = feasibility_weighting
+        self._seed = seed
+        self._warm_starts: dict[int, Any] = {}
+        self._posterior_of: tuple[int, Posterior] | None = None
+        self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
+
+    def posterior(self) -> Posterior:
+        """Return what is known of the objectives after the completed evaluations, of which there must be one."""
+        X, Y = self._history.X(), self._history.Y()
+        if self._posterior_of is None or self._posterior_of[0] != len(X):
+            self._posterior_of = (len(X), self._fit(X, Y))
+        return self._posterior_of[1]
+
+    def feasibility(self, searching: Sequence[Suggestion] | None = None) -> FeasibilityPosterior | None:
+        """Return what is known of the feasibility; None if no evaluation has been infeasible.
+
+        While there is nothing but this to go by, the pending suggestions are given as `searching`: they count as
+        infeasible, so that a batch spreads.
+        """
+        X, is_feasible = self._history.feasibility()
+        if self._feasibility_weighting is None or is_feasible.all():
+            return None
+        if self._feasibility_of is None or self._feasibility_of[0] != len(X) or searching is not None:
+            space = self._history.space
+            pending = space.encode([s.configuration for s in searching or ()])
+            known = np.append(is_feasible, np.zeros(len(pending), dtype=bool))
+            posterior = self._feasibility_weighting.fit(
+                np.vstack([X, pending]), known, space.is_ordered, space.permutations
+            )
+            self._feasibility_of = (len(X), posterior)
+        return self._feasibility_of[1]
+
+    def _fit(self, X: FloatArray, Y: FloatArray) -> Posterior:
+        start = None
+        for k in milestones(len(X)) if self._surrogate.starts_warm else ():
+            if k not in self._warm_starts:
+                self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start).hyperparameters
+            start = self._warm_starts[k]
+        return self._fit_from(X, Y, start)
+
+    def _fit_from(self, X: FloatArray, Y: FloatArray, start: Any) -> Posterior:
+        rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
+        space = self._history.space
+        return self._surrogate.fit(
+            X, Y, is_ordered=space.is_ordered, rng=rng, start=start, permutations=space.permutations
+        )
+
+
+def milestones(n: int) -> Iterator[int]:
+    """Yield the numbers of evaluations below n whose fits start the later ones."""
+    k = float(FIRST_MILESTONE)
+    while k < n:
+        yield int(k)
+        k *= MILESTONE_GROWTH
