@@ -3,100 +3,37 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from scipy.special import ndtr
 
 from hypermap_lite.acquisition.base import Rough
+from hypermap_lite.acquisition.boxes import Boxes
 from hypermap_lite.acquisition.improvement import LOG_SQRT_2PI, log_h, log_h_slope, log_sum_exp
-from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.surrogates.base import Field
-from hypermap_lite.typing import FloatArray, IntArray
+from hypermap_lite.typing import FloatArray
 
 LOG_SURELY_A_NUMBER = -400.0
 """Log of a growth, in units of the front's range, above which no float of the plain formula vanishes."""
 
+LOG_NOTHING = -1e30
+"""Stands for the log of no gain, so that two of them can be subtracted."""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cells:
-    """What S fronts of two or three objectives leave undominated below the reference point.
-
-    The first and the third objective are cut at the points of a front; in each cell of that grid everything whose
-    second objective is below one height is undominated. With two objectives the third axis has a single cell that
-    reaches from minus to plus infinity.
-    """
-
-    edges: FloatArray
-    """Upper ends of the cells along the first objective, rising, shape (S, a)."""
-
-    heights: FloatArray
-    """Values of the second objective at which cells may end, shape (S, b)."""
-
-    layers: FloatArray | None
-    """Upper ends along the third objective, rising, shape (S, c); None for two objectives."""
-
-    height_of: IntArray
-    """Index of the height of each cell, shape (S, c, a); c is 1 for two objectives."""
-
-    def first(self, n: int) -> Cells:
-        """Return those of the first n fronts."""
-        layers = None if self.layers is None else self.layers[:n]
-        return Cells(edges=self.edges[:n], heights=self.heights[:n], layers=layers, height_of=self.height_of[:n])
-
-    @classmethod
-    def of(cls, fronts: FloatArray, reference_point: FloatArray) -> Cells:
-        """Cut the space below the reference point.
-
-        Parameters
-        ----------
-        fronts
-            S sets of points, to be minimized, shape (S, k, m), m in {2, 3}; dominated points, and those not below the
-            reference point, leave no trace.
-        reference_point
-            Shape (m,).
-        """
-        kept = [np.unique(front_below(points, reference_point), axis=0) for points in fronts]
-        size = max(map(len, kept))
-        corner = reference_point[None, None]
-        padded = np.broadcast_to(corner, (len(kept), size + 1, corner.shape[2])).copy()
-        for s, front in enumerate(kept):
-            padded[s, : len(front)] = front  # sorted by the first objective; the rest is the reference point itself
-        edges, heights = padded[:, :, 0], padded[:, :, 1]
-        # The height of a cell is the least second objective of the points before it, of those below its layer.
-        before = np.concatenate([heights[:, -1:], heights[:, :-1]], axis=1)
-        if padded.shape[2] == 2:
-            return cls(edges=edges, heights=before, layers=None, height_of=_running_argmin(before)[:, None])
-        third = np.concatenate([np.full((len(kept), 1), -np.inf), padded[:, :-1, 2]], axis=1)
-        layers = np.sort(padded[:, :, 2], axis=1)
-        lower = np.concatenate([np.full((len(kept), 1), -np.inf), layers[:, :-1]], axis=1)
-        is_below = third[:, None] <= lower[:, :, None]
-        seen = np.where(is_below, before[:, None], np.inf)
-        return cls(edges=edges, heights=before, layers=layers, height_of=_running_argmin(seen))
-
-
-def _running_argmin(values: FloatArray) -> IntArray:
-    """Return the index of the least value up to each position of the last axis, the first of equals."""
-    least = np.minimum.accumulate(values, axis=-1)
-    is_new = np.concatenate([np.ones_like(least[..., :1], dtype=bool), least[..., 1:] < least[..., :-1]], axis=-1)
-    positions = np.where(is_new, np.arange(values.shape[-1]), 0)
-    return np.asarray(np.maximum.accumulate(positions, axis=-1))
-
-
-def front_below(Y: FloatArray, reference_point: FloatArray) -> FloatArray:
-    """Return the non-dominated rows that are better than the reference point everywhere, shape (k, m)."""
-    inside = Y[(reference_point > Y).all(axis=1)]
-    return inside[non_dominated(inside)] if len(inside) else inside
+Slopes: TypeAlias = tuple[FloatArray, FloatArray]
+"""Derivatives by means and by standard deviations, shapes (S, n, m)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HypervolumeImprovement:
     r"""Log of the growth of the dominated hypervolume that a point is expected to bring, averaged over S fronts.
 
-    With independent normal objectives and the cells of `Cells`,
+    With independent normal objectives, and boxes from :math:`l` to :math:`u` in the first and the third objective that
+    are undominated up to :math:`h` in the second,
 
-    .. math:: \sum_{ij} (E_1(e_j) - E_1(e_{j-1})) \, E_2(h_{ij}) \, (E_3(l_i) - E_3(l_{i-1})), \qquad
-        E_k(t) = E[\max(0, t - y_k)],
+    .. math:: \sum (E_1(u_1) - E_1(l_1)) \, E_2(h) \, (E_3(u_3) - E_3(l_3)), \qquad E_k(t) = E[\max(0, t - y_k)],
 
     which is exact [1]_ for each front; the mean over fronts drawn from the posterior makes it noisy expected
     hypervolume improvement [2]_. Sums and differences are taken of logarithms where a float would vanish [3]_.
@@ -113,7 +50,7 @@ class HypervolumeImprovement:
     field: Field
     """With S scenarios, or one."""
 
-    cells: Cells
+    boxes: Boxes
     is_differentiable: bool
     screening: int = 0
     """Fronts that tell which points are worth a closer look; 0 for all."""
@@ -121,36 +58,36 @@ class HypervolumeImprovement:
     def __call__(self, X: FloatArray) -> FloatArray:
         """Return the log acquisition value at n points, shape (n,)."""
         c = self.field(X)
-        return self._score(c.mean, c.std, self.cells)
+        return self._score(c.mean, c.std, self.boxes)
 
     @property
     def rough(self) -> Rough | None:
         """The same over a few of the fronts."""
-        return self._rough if 0 < self.screening < len(self.cells.edges) else None
+        return self._rough if 0 < self.screening < len(self.boxes) else None
 
     def _rough(self, X: FloatArray) -> FloatArray:
         c, few = self.field(X), slice(self.screening)
-        return self._score(c.mean[few], c.std[few], self.cells.first(self.screening))
+        return self._score(c.mean[few], c.std[few], self.boxes.first(self.screening))
 
     @staticmethod
-    def _score(mean: FloatArray, std: FloatArray, cells: Cells) -> FloatArray:
+    def _score(mean: FloatArray, std: FloatArray, boxes: Boxes) -> FloatArray:
         with np.errstate(divide="ignore"):
-            score = np.log(Growth.of(cells, mean, std).value)
+            score = np.log(Growth.of(boxes, mean, std).value)
         tiny = score < LOG_SURELY_A_NUMBER
         if tiny.any():
-            score[tiny] = LogGrowth.of(cells, mean[:, tiny], std[:, tiny]).score
+            score[tiny] = LogGrowth.of(boxes, mean[:, tiny], std[:, tiny]).score
         return score
 
     def with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the scores, shape (n,), and their gradients, shape (n, d)."""
         c = self.field(X)
-        growth = Growth.of(self.cells, c.mean, c.std)
+        growth = Growth.of(self.boxes, c.mean, c.std)
         with np.errstate(divide="ignore", invalid="ignore"):
             score = np.log(growth.value)
             by_mean, by_std = (slope / growth.value[:, None] for slope in growth.slopes())
         tiny = score < LOG_SURELY_A_NUMBER
         if tiny.any():
-            exact = LogGrowth.of(self.cells, c.mean[:, tiny], c.std[:, tiny])
+            exact = LogGrowth.of(self.boxes, c.mean[:, tiny], c.std[:, tiny])
             score[tiny] = exact.score
             by_mean[:, tiny], by_std[:, tiny] = exact.slopes()
         if len(c.mean) == 1:
@@ -162,60 +99,8 @@ class HypervolumeImprovement:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Growth:
-    """The growth itself, and what its derivatives need; for points at which it does not vanish."""
-
-    gains: tuple[Gain, ...]
-    """Of edges, heights and layers."""
-
-    height_of: IntArray
-
-    @classmethod
-    def of(cls, cells: Cells, mean: FloatArray, std: FloatArray) -> Growth:
-        """Take it for means (S or 1, n, m) and standard deviations (S or 1, n, m)."""
-        limits = (cells.edges, cells.heights) if cells.layers is None else (cells.edges, cells.heights, cells.layers)
-        gains = tuple(Gain.of(limit, mean[:, :, k], std[:, :, k]) for k, limit in enumerate(limits))
-        return cls(gains=gains, height_of=cells.height_of)
-
-    @property
-    def value(self) -> FloatArray:
-        """Mean growth at n points, shape (n,), >= 0."""
-        first, second = self.gains[0].steps, self.gains[1].value
-        if len(self.gains) == 2:
-            return np.asarray(np.einsum("sna,sna->n", first, self._at(second, 0)) / len(first))
-        third = self.gains[2].steps
-        layers = range(third.shape[2])
-        total = sum(third[:, :, i] * np.einsum("sna,sna->sn", first, self._at(second, i)) for i in layers)
-        return np.asarray(np.mean(total, axis=0))
-
-    def _at(self, of_heights: FloatArray, layer: int) -> FloatArray:
-        """Return what belongs to the heights of a layer's cells, (S, n, b) to (S, n, a)."""
-        return np.take_along_axis(of_heights, self.height_of[:, layer, None], axis=2)
-
-    def slopes(self) -> tuple[FloatArray, FloatArray]:
-        """Return the derivatives of the mean growth by means and standard deviations, shapes (S, n, m)."""
-        return self._slopes([-gain.cdf for gain in self.gains]), self._slopes([gain.density for gain in self.gains])
-
-    def _slopes(self, slopes: list[FloatArray]) -> FloatArray:
-        """Return the derivatives, given those of every gain."""
-        first, second = self.gains[0].steps, self.gains[1].value
-        first_slope = _differences(slopes[0])
-        has_layers = len(self.gains) == 3
-        third = self.gains[2].steps if has_layers else np.ones((*first.shape[:2], 1))
-        third_slope = _differences(slopes[2]) if has_layers else None
-        by = np.zeros((*first.shape[:2], len(self.gains)))
-        for i in range(third.shape[2]):
-            below = self._at(second, i)
-            by[:, :, 0] += third[:, :, i] * np.einsum("sna,sna->sn", first_slope, below)
-            by[:, :, 1] += third[:, :, i] * np.einsum("sna,sna->sn", first, self._at(slopes[1], i))
-            if third_slope is not None:
-                by[:, :, 2] += third_slope[:, :, i] * np.einsum("sna,sna->sn", first, below)
-        return by / len(first)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Gain:
-    """E[max(0, limit - y)] of k limits for n normal y in S scenarios; all of shape (S, n, k)."""
+    """E[max(0, limit - y)] of k limits for n normal y in S scenarios; all of shape (S, k, n)."""
 
     value: FloatArray
     cdf: FloatArray
@@ -227,97 +112,112 @@ class Gain:
     @classmethod
     def of(cls, limits: FloatArray, mean: FloatArray, std: FloatArray) -> Gain:
         """Take it for limits (S, k), means (S or 1, n) and standard deviations (S or 1, n)."""
-        std = std[:, :, None]
-        z = (limits[:, None] - mean[:, :, None]) / std
+        std = std[:, None]
+        z = (limits[:, :, None] - mean[:, None]) / std
         density = np.exp(-0.5 * z * z - LOG_SQRT_2PI)
         cdf = ndtr(z)
         return cls(value=np.maximum(std * (density + z * cdf), 0.0), cdf=cdf, density=density)
 
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Growth:
+    """The growth itself, and what its derivatives need; for points at which it does not vanish."""
+
+    boxes: Boxes
+    gains: tuple[Gain, ...]
+    factors: tuple[FloatArray, ...]
+    """What each objective gives to each box, shapes (S, B, n), >= 0."""
+
+    @classmethod
+    def of(cls, boxes: Boxes, mean: FloatArray, std: FloatArray) -> Growth:
+        """Take it for means (S or 1, n, m) and standard deviations (S or 1, n, m)."""
+        gains = tuple(Gain.of(limits, mean[:, :, k], std[:, :, k]) for k, limits in enumerate(boxes.limits))
+        factors = tuple(np.maximum(boxes.sides(k, gain.value), 0.0) for k, gain in enumerate(gains))
+        return cls(boxes=boxes, gains=gains, factors=factors)
+
     @property
-    def steps(self) -> FloatArray:
-        """What each limit gains over the one before."""
-        return np.maximum(_differences(self.value), 0.0)
+    def value(self) -> FloatArray:
+        """Mean growth at n points, shape (n,), >= 0."""
+        return np.asarray(_total(self.factors).sum(axis=0) / len(self.boxes))
+
+    def slopes(self) -> Slopes:
+        """Return the derivatives of the mean growth."""
+        by_mean = [self._slope(k, -gain.cdf) for k, gain in enumerate(self.gains)]
+        by_std = [self._slope(k, gain.density) for k, gain in enumerate(self.gains)]
+        return np.stack(by_mean, axis=2) / len(self.boxes), np.stack(by_std, axis=2) / len(self.boxes)
+
+    def _slope(self, k: int, slopes: FloatArray) -> FloatArray:
+        others = [factor for j, factor in enumerate(self.factors) if j != k]
+        return _total([self.boxes.sides(k, slopes), *others])
 
 
-def _differences(values: FloatArray) -> FloatArray:
-    """Return the differences along the last axis, the first value as it is."""
-    steps = values.copy()
-    steps[..., 1:] -= values[..., :-1]
-    return steps
+def _total(factors: list[FloatArray] | tuple[FloatArray, ...]) -> FloatArray:
+    """Return the sum over the boxes of the products of their factors, shape (S, n)."""
+    return np.asarray(np.einsum(",".join(["sbn"] * len(factors)) + "->sn", *factors))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LogGrowth:
-    """The logarithm of every cell's part at n points, and what their derivatives need."""
+    """The logarithm of every box's part at n points, and what their derivatives need."""
 
     score: FloatArray
     """Log of the mean growth, shape (n,)."""
 
     share: FloatArray
-    """Each cell's part of the growth, shape (S, n, c, a)."""
+    """Each box's part of the growth, shape (S, B, n)."""
 
+    boxes: Boxes
     z: tuple[FloatArray, ...]
-    """Standardized edges, heights and layers, shapes (S, n, k)."""
+    """Standardized limits of each objective, shapes (S, k, n)."""
 
-    ratios: tuple[FloatArray, ...]
-    """Gain of each edge, or layer, relative to the following one, shapes (S, n, k - 1)."""
-
+    log_gains: tuple[FloatArray, ...]
     std: FloatArray
-    height_of: IntArray
 
     @classmethod
-    def of(cls, cells: Cells, mean: FloatArray, std: FloatArray) -> LogGrowth:
-        """Take them for means (S or 1, n, m) and standard deviations (S or 1, n, m)."""
-        first, *of_first = cls._log_steps(cells.edges, mean[:, :, 0], std[:, :, 0])
-        z = (cells.heights[:, None] - mean[:, :, 1, None]) / std[:, :, 1, None]
-        second = log_h(z) + np.log(std[:, :, 1, None])
-        n_fronts = len(cells.height_of)
-        index = np.broadcast_to(cells.height_of[:, None], (n_fronts, second.shape[1], *cells.height_of.shape[1:]))
-        terms = first[:, :, None] + np.take_along_axis(second[:, :, None], index, axis=3)
-        zs, ratios = [of_first[0], z], [of_first[1]]
-        if cells.layers is not None:
-            third, *of_third = cls._log_steps(cells.layers, mean[:, :, 2], std[:, :, 2])
-            terms = terms + third[..., None]
-            zs.append(of_third[0])
-            ratios.append(of_third[1])
-        n = terms.shape[1]
-        total = log_sum_exp(np.moveaxis(terms, 1, -1).reshape(-1, n))
+    def of(cls, boxes: Boxes, mean: FloatArray, std: FloatArray) -> LogGrowth:
+        """Take it for means (S or 1, n, m) and standard deviations (S or 1, n, m)."""
+        zs, log_gains = [], []
+        terms: FloatArray | float = 0.0
+        for k, limits in enumerate(boxes.limits):
+            z = (limits[:, :, None] - mean[:, None, :, k]) / std[:, None, :, k]
+            log_gain = log_h(z) + np.log(std[:, None, :, k])
+            terms = terms + _log_sides(boxes, k, log_gain)
+            zs.append(z)
+            log_gains.append(log_gain)
+        terms = np.asarray(terms)
+        total = log_sum_exp(terms.reshape(-1, terms.shape[2]))
         with np.errstate(invalid="ignore"):
-            share = np.nan_to_num(np.exp(terms - total[None, :, None, None]))
-        score = total - math.log(n_fronts)
-        return cls(score=score, share=share, z=tuple(zs), ratios=tuple(ratios), std=std, height_of=cells.height_of)
+            share = np.nan_to_num(np.exp(terms - total))
+        score = total - math.log(len(boxes))
+        return cls(score=score, share=share, boxes=boxes, z=tuple(zs), log_gains=tuple(log_gains), std=std)
 
-    @staticmethod
-    def _log_steps(limits: FloatArray, mean: FloatArray, std: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the logs of the steps between the gains of rising limits, the limits' z, and the gains' ratios."""
-        z = (limits[:, None] - mean[:, :, None]) / std[:, :, None]
-        log_gain = log_h(z) + np.log(std[:, :, None])
-        ratio = np.exp(np.minimum(log_gain[..., :-1] - log_gain[..., 1:], 0.0))
-        with np.errstate(divide="ignore"):
-            rest = log_gain[..., 1:] + np.log1p(-ratio)
-        return np.concatenate([log_gain[..., :1], rest], axis=2), z, ratio
-
-    def slopes(self) -> tuple[FloatArray, FloatArray]:
-        """Return the derivatives of the score by means and standard deviations, shapes (S, n, m)."""
-        by_mean, by_std = [], []
-        for k, z in enumerate(self.z):
-            std, slope = self.std[:, :, k], log_h_slope(z)
-            by_mean.append(-self._sum(k, slope) / std)
-            by_std.append(self._sum(k, 1 - slope * z) / std)
+    def slopes(self) -> Slopes:
+        """Return the derivatives of the score."""
+        by_mean, by_std = zip(*self._slopes(), strict=True)
         return np.stack(by_mean, axis=2), np.stack(by_std, axis=2)
 
-    def _sum(self, k: int, slopes: FloatArray) -> FloatArray:
-        """Return the mean over all cells, by their parts, of what belongs to objective k's limits, shape (S, n)."""
-        if k == 1:
-            index = np.broadcast_to(self.height_of[:, None], self.share.shape)
-            return np.asarray((self.share * np.take_along_axis(slopes[:, :, None], index, axis=3)).sum(axis=(2, 3)))
-        share = self.share.sum(axis=2 if k == 0 else 3)
-        return np.asarray((share * _log_difference(slopes, self.ratios[k // 2])).sum(axis=2))
+    def _slopes(self) -> Iterator[tuple[FloatArray, FloatArray]]:
+        for k, (z, log_gain) in enumerate(zip(self.z, self.log_gains, strict=True)):
+            slope, std = log_h_slope(z), self.std[:, :, k]
+            by_mean, by_std = (_log_slopes(self.boxes, k, log_gain, s) for s in (-slope, 1 - slope * z))
+            yield (self.share * by_mean).sum(axis=1) / std, (self.share * by_std).sum(axis=1) / std
 
 
-def _log_difference(slopes: FloatArray, ratio: FloatArray) -> FloatArray:
-    """Return the derivatives of log(g_i - g_(i-1)), from those of log g_i and the ratios g_(i-1) / g_i."""
-    rest = 1.0 - ratio
+def _log_sides(boxes: Boxes, k: int, log_gain: FloatArray) -> FloatArray:
+    """Return the logs of `Boxes.sides`, from those of the gains."""
+    if k == 1:
+        return boxes.sides(k, log_gain)
+    lower, upper = boxes.ends(k, log_gain, below=LOG_NOTHING)
+    with np.errstate(divide="ignore"):
+        return np.asarray(upper + np.log1p(-np.exp(np.minimum(lower - upper, 0.0))))
+
+
+def _log_slopes(boxes: Boxes, k: int, log_gain: FloatArray, slopes: FloatArray) -> FloatArray:
+    """Return the derivatives of `_log_sides`, from those of the gains' logs: of log(u - l) from log u and log l."""
+    if k == 1:
+        return boxes.sides(k, slopes)
+    lower, upper = boxes.ends(k, log_gain, below=LOG_NOTHING)
+    ratio = np.exp(np.minimum(lower - upper, 0.0))
+    of_lower, of_upper = boxes.ends(k, slopes, below=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        inner = (slopes[..., 1:] - ratio * slopes[..., :-1]) / rest
-    return np.concatenate([slopes[..., :1], np.where(rest > 0, inner, 0.0)], axis=-1)
+        return np.where(ratio < 1, (of_upper - ratio * of_lower) / (1 - ratio), 0.0)

@@ -8,8 +8,9 @@ from typing import ClassVar
 import numpy as np
 
 from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
+from hypermap_lite.acquisition.boxes import Boxes
 from hypermap_lite.acquisition.expected_improvement import check_samples
-from hypermap_lite.acquisition.hypervolume_improvement import Cells, HypervolumeImprovement
+from hypermap_lite.acquisition.hypervolume_improvement import HypervolumeImprovement
 from hypermap_lite.acquisition.improvement import LinearImprovement
 from hypermap_lite.acquisition.noisy_expected_improvement import NoisyExpectedImprovement
 from hypermap_lite.objectives import MAX_CLOSED_FORM
@@ -79,7 +80,7 @@ class NoisyExpectedHypervolumeImprovement:
         return HypervolumeImprovement(
             field=_Scaled(field, scale),
             screening=self.screening,
-            cells=Cells.of(fronts / scale, reference_point / scale),
+            boxes=Boxes.of(fronts / scale, reference_point / scale),
             is_differentiable=posterior.is_differentiable,
         )
 

@@ -16,8 +16,7 @@ from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.typing import FloatArray
 
 FIRST_MILESTONE = 8
-MILESTONE_GROWTH = 1.5
-"""Hyperparameters are fitted on the first 8, 12, 18, ... evaluations, each fit starting from the last.
+"""Hyperparameters are fitted on the first 8 evaluations, then at numbers that grow by the surrogate's factor.
 
 The warm start of any fit is that of the milestone below, never that of the last call, so it is a function of the
 history and a resumed run fits as the uninterrupted one did.
@@ -77,12 +76,15 @@ class Models:
         return self._feasibility_of[1]
 
     def _fit(self, X: FloatArray, Y: FloatArray) -> Posterior:
-        start = None
-        for k in milestones(len(X)) if self._surrogate.starts_warm else ():
+        n, start, growth = len(X), None, self._surrogate.warm_start_growth
+        for k in () if growth is None else milestones(n, growth):
             if k not in self._warm_starts:
                 self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start).hyperparameters
             start = self._warm_starts[k]
-        return self._fit_from(X, Y, start)
+        posterior = self._fit_from(X, Y, start)
+        if growth is not None and n in milestones(n + 1, growth):
+            self._warm_starts[n] = posterior.hyperparameters  # what a later call would work out again
+        return posterior
 
     def _fit_from(self, X: FloatArray, Y: FloatArray, start: Any) -> Posterior:
         rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
@@ -92,9 +94,9 @@ class Models:
         )
 
 
-def milestones(n: int) -> Iterator[int]:
+def milestones(n: int, growth: float) -> Iterator[int]:
     """Yield the numbers of evaluations below n whose fits start the later ones."""
     k = float(FIRST_MILESTONE)
     while k < n:
         yield int(k)
-        k *= MILESTONE_GROWTH
+        k *= growth

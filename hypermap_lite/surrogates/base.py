@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -106,8 +106,10 @@ class Posterior(Protocol):
 class Surrogate(Protocol):
     """Options of a model. It does not change when it is fitted."""
 
-    starts_warm: ClassVar[bool]
-    """Whether a fit gains from the hyperparameters of an earlier one."""
+    @property
+    def warm_start_growth(self) -> float | None:
+        """By what factor the evaluations grow between the fits that later ones start from; None for no such starts."""
+        ...
 
     def fit(
         self,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 from scipy.special import ndtri
@@ -61,8 +60,6 @@ class GaussianProcess:
     lengthscale_width: float = 0.7
     """Standard deviation of that prior, > 0."""
 
-    starts_warm: ClassVar[bool] = True
-
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
             raise ScenarioError("$.noise_floor", f"the floor is {self.noise_floor}", allowed="a number > 0, at most 1")
@@ -72,6 +69,11 @@ class GaussianProcess:
         if not 0 < self.lengthscale_width < math.inf:
             problem = f"the width is {self.lengthscale_width}"
             raise ScenarioError("$.lengthscale_width", problem, allowed="a number > 0")
+
+    @property
+    def warm_start_growth(self) -> float:
+        """Fits without a restart start from closer ones."""
+        return 1.5 if self.restart else 1.2
 
     def fit(
         self,
@@ -98,7 +100,7 @@ class GaussianProcess:
             starts = [] if start is None else [start[k]]
             if start is None or self.restart:
                 starts.append(prior.mode())
-            best = fit_hyperparameters(likelihood, starts)
+            best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
             processes.append(Process.condition(X, output, best, is_ordered, permutations))
         return GaussianProcessPosterior(processes=tuple(processes))
 

@@ -160,20 +160,22 @@ def inverse_from_cholesky(L: FloatArray) -> FloatArray:
     return lower + np.tril(lower, -1).T
 
 
-def fit_hyperparameters(likelihood: MarginalLikelihood, starts: Sequence[Hyperparameters]) -> Hyperparameters:
+def fit_hyperparameters(
+    likelihood: MarginalLikelihood, starts: Sequence[Hyperparameters], *, is_exact: bool = True
+) -> Hyperparameters:
     """Return the most likely hyperparameters found by L-BFGS-B from the given starts.
 
+    Where the likelihood is flat, an exact search makes most of its steps for its last thousandth; another ends there.
     Falls back to the mode of the prior, with a warning, if no start leads to a finite value.
     """
     from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
 
     bounds = likelihood.prior.bounds()
+    options = {"maxiter": MAX_ITERATIONS} if is_exact else {"maxiter": MAX_ITERATIONS, "ftol": 1e-6, "gtol": 1e-2}
     best, best_value = likelihood.prior.mode(), math.inf
     for start in starts:
         theta = np.clip(start.to_log(), bounds[:, 0], bounds[:, 1])
-        result = minimize(
-            likelihood, theta, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": MAX_ITERATIONS}
-        )
+        result = minimize(likelihood, theta, jac=True, method="L-BFGS-B", bounds=bounds, options=options)
         if np.isfinite(result.fun) and result.fun < min(best_value, REJECTED):
             best, best_value = Hyperparameters.from_log(result.x), float(result.fun)
     if not math.isfinite(best_value):

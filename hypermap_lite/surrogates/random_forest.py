@@ -58,7 +58,7 @@ class RandomForest:
     """Whether a split lies anywhere between the two evaluations it separates, instead of halfway: trees then differ
     where there are no evaluations [1]_."""
 
-    starts_warm: ClassVar[bool] = False
+    warm_start_growth: ClassVar[float | None] = None
 
     def __post_init__(self) -> None:
         if self.number_of_trees < 2:

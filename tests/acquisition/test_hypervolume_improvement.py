@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from hypermap_lite.acquisition.hypervolume_improvement import Cells, Growth, HypervolumeImprovement, LogGrowth
+from hypermap_lite.acquisition.boxes import Boxes
+from hypermap_lite.acquisition.hypervolume_improvement import Growth, HypervolumeImprovement, LogGrowth
 from hypermap_lite.pareto.hypervolume import hypervolume
 from hypermap_lite.surrogates.base import Conditional, Field
 from tests.acquisition.toy_field import toy_field
@@ -26,8 +27,8 @@ def fixed(mean: np.ndarray, std: np.ndarray) -> Field:
 
 
 def improvement(field: Field, fronts: np.ndarray) -> HypervolumeImprovement:
-    cells = Cells.of(fronts, reference(fronts.shape[2]))
-    return HypervolumeImprovement(field=field, cells=cells, is_differentiable=True)
+    boxes = Boxes.of(fronts, reference(fronts.shape[2]))
+    return HypervolumeImprovement(field=field, boxes=boxes, is_differentiable=True)
 
 
 def growth(point: np.ndarray, front: np.ndarray) -> float:
@@ -81,8 +82,8 @@ def test_far_behind_the_front_scores_stay_finite_and_fall_with_the_distance(m: i
 def test_the_plain_formula_and_that_of_logarithms_agree(m: int) -> None:
     rng = np.random.default_rng(3)
     fronts, mean, std = rng.random((4, 7, m)), rng.random((4, 9, m)), 0.05 + rng.random((1, 9, m))
-    cells = Cells.of(fronts, reference(m))
-    plain, exact = Growth.of(cells, mean, std), LogGrowth.of(cells, mean, std)
+    boxes = Boxes.of(fronts, reference(m))
+    plain, exact = Growth.of(boxes, mean, std), LogGrowth.of(boxes, mean, std)
     assert np.log(plain.value) == pytest.approx(exact.score, rel=1e-10)
     for ours, theirs in zip(plain.slopes(), exact.slopes(), strict=True):
         assert ours / plain.value[:, None] == pytest.approx(theirs, rel=1e-6, abs=1e-10)
@@ -92,15 +93,15 @@ def test_the_plain_formula_and_that_of_logarithms_agree(m: int) -> None:
 @pytest.mark.parametrize("distance", [0.0, 20.0])
 def test_slopes_agree_with_finite_differences(m: int, distance: float) -> None:
     rng = np.random.default_rng(4)
-    cells = Cells.of(rng.random((3, 6, m)), reference(m))
+    boxes = Boxes.of(rng.random((3, 6, m)), reference(m))
     mean, std = rng.random((3, 5, m)) + distance, 0.2 + 0.3 * rng.random((3, 5, m))
-    by_mean, by_std = LogGrowth.of(cells, mean, std).slopes()
+    by_mean, by_std = LogGrowth.of(boxes, mean, std).slopes()
     for where in [(0, 1, 0), (1, 2, 1), (2, 3, m - 1), (0, 4, m - 1)]:
         step = np.zeros_like(mean)
         step[where] = 1e-6
-        ends = [LogGrowth.of(cells, mean + s * step, std).score[where[1]] for s in (-1, 1)]
+        ends = [LogGrowth.of(boxes, mean + s * step, std).score[where[1]] for s in (-1, 1)]
         assert by_mean[where] == pytest.approx((ends[1] - ends[0]) / 2e-6, rel=1e-4, abs=1e-7)
-        ends = [LogGrowth.of(cells, mean, std + s * step).score[where[1]] for s in (-1, 1)]
+        ends = [LogGrowth.of(boxes, mean, std + s * step).score[where[1]] for s in (-1, 1)]
         assert by_std[where] == pytest.approx((ends[1] - ends[0]) / 2e-6, rel=1e-4, abs=1e-7)
 
 
@@ -130,10 +131,10 @@ def test_a_few_fronts_tell_roughly_the_same() -> None:
         c = inner(X)
         return Conditional(mean=c.mean + offsets, std=c.std)
 
-    cells = Cells.of(fronts, reference(2))
-    scorer = HypervolumeImprovement(field=field, cells=cells, is_differentiable=True, screening=8)
+    boxes = Boxes.of(fronts, reference(2))
+    scorer = HypervolumeImprovement(field=field, boxes=boxes, is_differentiable=True, screening=8)
     X = rng.random((200, 2))
     assert scorer.rough is not None
     assert np.corrcoef(scorer.rough(X), scorer(X))[0, 1] > 0.95
     assert not np.array_equal(scorer.rough(X), scorer(X))
-    assert HypervolumeImprovement(field=field, cells=cells, is_differentiable=True).rough is None
+    assert HypervolumeImprovement(field=field, boxes=boxes, is_differentiable=True).rough is None

@@ -54,8 +54,8 @@ def test_known_values_have_one_front_and_uncertain_ones_many() -> None:
     drawn = NoisyExpectedHypervolumeImprovement(samples=16).scorer(context(noisy, noise=True))
     assert isinstance(exact, HypervolumeImprovement)
     assert isinstance(drawn, HypervolumeImprovement)
-    assert len(exact.cells.edges) == 1
-    assert len(drawn.cells.edges) == 16
+    assert len(exact.boxes) == 1
+    assert len(drawn.boxes) == 16
 
 
 def test_drawn_fronts_agree_with_the_known_one() -> None:

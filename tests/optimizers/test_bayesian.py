@@ -235,8 +235,9 @@ def test_a_front_flat_but_for_numerical_dust_does_not_blind_the_search() -> None
 
 
 def test_milestones_depend_on_nothing_but_the_count() -> None:
-    assert list(milestones(8)) == []
-    assert list(milestones(30)) == [8, 12, 18, 27]
+    assert list(milestones(8, 1.5)) == []
+    assert list(milestones(30, 1.5)) == [8, 12, 18, 27]
+    assert list(milestones(20, 1.2)) == [8, 9, 11, 13, 16, 19]
 
 
 REDRAWN = {"weights": {"type": "dirichlet", "ends": 0.3, "redraws": 3}}
