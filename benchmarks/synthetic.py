@@ -20,61 +20,17 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from problems.formulas import ackley, branin, hartmann6, levy, rosenbrock
 from reporting import ResultTable, machine
 
 from hypermap_lite import Optimizer
-
-Point = npt.NDArray[np.float64]
-
-HARTMANN_ALPHA = np.array([1.0, 1.2, 3.0, 3.2])
-HARTMANN_A = np.array(
-    [
-        [10, 3, 17, 3.5, 1.7, 8],
-        [0.05, 10, 17, 0.1, 8, 14],
-        [3, 3.5, 1.7, 10, 17, 8],
-        [17, 8, 0.05, 10, 0.1, 14],
-    ]
-)
-HARTMANN_P = 1e-4 * np.array(
-    [
-        [1312, 1696, 5569, 124, 8283, 5886],
-        [2329, 4135, 8307, 3736, 1004, 9991],
-        [2348, 1451, 3522, 2883, 3047, 6650],
-        [4047, 8828, 8732, 5743, 1091, 381],
-    ]
-)
-
-
-def branin(x: Point) -> float:
-    a, b = x
-    curve = b - 5.1 / (4 * math.pi**2) * a * a + 5 / math.pi * a - 6
-    return curve**2 + 10 * (1 - 1 / (8 * math.pi)) * math.cos(a) + 10
-
-
-def hartmann6(x: Point) -> float:
-    return -float(HARTMANN_ALPHA @ np.exp(-(HARTMANN_A * (x - HARTMANN_P) ** 2).sum(axis=1)))
-
-
-def ackley(x: Point) -> float:
-    ridge = -20 * math.exp(-0.2 * math.sqrt(np.mean(x * x)))
-    return ridge - math.exp(np.mean(np.cos(2 * math.pi * x))) + 20 + math.e
-
-
-def levy(x: Point) -> float:
-    w = 1 + (x - 1) / 4
-    middle = ((w[:-1] - 1) ** 2 * (1 + 10 * np.sin(math.pi * w[:-1] + 1) ** 2)).sum()
-    return float(np.sin(math.pi * w[0]) ** 2 + middle + (w[-1] - 1) ** 2 * (1 + np.sin(2 * math.pi * w[-1]) ** 2))
-
-
-def rosenbrock(x: Point) -> float:
-    return float((100 * (x[1:] - x[:-1] ** 2) ** 2 + (1 - x[:-1]) ** 2).sum())
 
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
     """A function to minimize, and how long it may take."""
 
-    function: Callable[[Point], float]
+    function: Callable[[npt.NDArray[np.float64]], float]
     bounds: tuple[tuple[float, float], ...]
     optimum: float
     value_range: float
@@ -147,7 +103,7 @@ def measure(name: str, noise: float, method: str, seed: int) -> dict[str, Any]:
         start = time.process_time()
         (suggestion,) = optimizer.ask()
         cpu += time.process_time() - start
-        value = problem.function(np.array(list(suggestion.configuration.values()), dtype=float))
+        value = float(problem.function(np.array(list(suggestion.configuration.values()), dtype=float)))
         best = min(best, value)
         optimizer.tell(suggestion, value + noise * problem.value_range * float(rng.standard_normal()))
     return {

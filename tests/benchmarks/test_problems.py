@@ -1,0 +1,135 @@
+"""The benchmark problems have the answers they claim."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from benchmarks.problems import PROBLEMS
+from hypermap_lite import hypervolume
+
+MINIMIZERS = {
+    "branin": [(-math.pi, 12.275), (math.pi, 2.275), (3 * math.pi, 2.475)],
+    "hartmann6": [(0.20168952, 0.15001069, 0.47687398, 0.27533243, 0.31165162, 0.65730054)],
+    "ackley5": [(0.0,) * 5],
+    "func2c": [(1, 1, 0.0898420131 / 2, -0.712656403 / 2), (1, 1, -0.0898420131 / 2, 0.712656403 / 2)],
+}
+
+
+def share(name, X):
+    """Return the share of the largest hypervolume that points dominate."""
+    problem = PROBLEMS[name]
+    Y = problem.function(X)
+    if problem.is_feasible is not None:
+        Y = Y[problem.is_feasible(X)]
+    return hypervolume(Y, np.array(problem.reference_point)) / problem.best
+
+
+def points(name, n):
+    problem = PROBLEMS[name]
+    return problem.points(np.random.default_rng(0).random((n, problem.dimension)))
+
+
+def grid(name, n):
+    axis = np.linspace(0, 1, n)
+    return PROBLEMS[name].points(np.column_stack([u.ravel() for u in np.meshgrid(axis, axis)]))
+
+
+@pytest.mark.parametrize("name", MINIMIZERS)
+def test_function_is_smallest_where_it_is_said_to_be(name):
+    problem = PROBLEMS[name]
+    assert problem.function(np.array(MINIMIZERS[name])).ravel() == pytest.approx(problem.best, abs=2e-6)
+    assert problem.function(points(name, 20_000)).min() >= problem.best
+
+
+def test_minimum_of_func2c_is_that_of_its_best_pair_of_functions():
+    problem = PROBLEMS["func2c"]
+    found = [
+        minimize(lambda x, h=h: problem.function(np.array([[*h, *x]]))[0, 0], x0, bounds=[(-1, 1)] * 2).fun
+        for h in itertools.product(range(3), range(5))
+        for x0 in ([0.1, -0.4], [0.5, 0.5], [-0.5, 0.5])
+    ]
+    assert min(found) == pytest.approx(problem.best, abs=1e-9)
+
+
+def test_front_of_zdt2_gives_the_hypervolume_in_closed_form():
+    X = np.zeros((2000, 6))
+    X[:, 0] = np.linspace(0, 1, 2000)
+    assert share("zdt2", X) == pytest.approx(1, abs=1e-5)
+    assert share("zdt2", X) < 1
+
+
+def test_front_of_dtlz2_gives_the_hypervolume_in_closed_form():
+    X = np.full((4000, 6), 0.5)
+    X[:, 0] = np.linspace(0, 1, 4000)
+    assert share("dtlz2", X) == pytest.approx(1, abs=1e-3)
+    assert share("dtlz2", X) < 1
+
+
+def test_front_of_dtlz2_with_three_objectives_gives_the_hypervolume_in_closed_form():
+    axis = np.linspace(0, 1, 100)
+    X = np.full((100 * 100, 6), 0.5)
+    X[:, :2] = np.column_stack([u.ravel() for u in np.meshgrid(axis, axis)])
+    assert share("dtlz2_m3", X) == pytest.approx(1, abs=0.03)
+    assert share("dtlz2_m3", X) < 1
+
+
+@pytest.mark.parametrize("name", ["branin_currin", "constrained_branin_currin", "chankong_haimes"])
+def test_fine_grid_of_the_square_reaches_the_published_hypervolume(name):
+    # The second one is of a run of NSGA-II, which the grid surpasses by 0.06 %.
+    assert 0.998 < share(name, grid(name, 2001)) < 1.001
+
+
+def test_front_of_c2_dtlz2_gives_the_published_hypervolume():
+    # With the last two coordinates in the middle, the second one gives every distance to the unit sphere up to 0.25.
+    axis = np.linspace(0, 1, 1001)
+    X = np.full((1001 * 1001, 4), 0.5)
+    X[:, :2] = np.column_stack([u.ravel() for u in np.meshgrid(axis, axis)])
+    assert share("c2dtlz2", X) == pytest.approx(1, abs=3e-3)
+
+
+@pytest.mark.parametrize("name", ["vehicle_safety", "penicillin"])
+def test_no_random_points_surpass_the_published_hypervolume(name):
+    assert 0.5 < share(name, points(name, 20_000)) < 1
+
+
+def test_vehicle_safety_agrees_with_botorch():
+    X = np.array([[1, 1, 1, 1, 1], [3, 1, 2, 1.5, 2.5]])
+    expected = [[1661.7078225, 8.3046, 0.0708], [1681.53596355, 9.749, 0.093425]]
+    assert PROBLEMS["vehicle_safety"].function(X) == pytest.approx(np.array(expected), rel=1e-9)
+
+
+def test_penicillin_agrees_with_botorch():
+    X = np.array([[90, 9, 298, 9, 0.25, 600, 5.75], [70, 5, 295, 12, 0.4, 650, 6.2]])
+    expected = [[-11.45733414, 46.91101054, 314], [-11.75252091, 67.10653697, 341]]
+    assert PROBLEMS["penicillin"].function(X) == pytest.approx(np.array(expected), abs=1e-8)
+
+
+def test_front_of_the_plateau_gives_the_hypervolume_in_closed_form():
+    s = np.linspace(0, 1, 4000)
+    successes = np.column_stack([np.full(4000, 0.7), np.full(4000, 0.35), np.full(4000, 0.3), s, np.full(4000, 0.5)])
+    assert share("plateau", np.vstack([successes, np.zeros(5)])) == pytest.approx(1, abs=1e-3)
+    assert share("plateau", points("plateau", 100_000)) < 1
+
+
+def test_most_of_the_plateau_is_failure_of_equal_duration():
+    durations = PROBLEMS["plateau"].function(points("plateau", 20_000))[:, 0]
+    assert np.mean(durations == 1.5) == pytest.approx(1 - math.pi * 0.15**2 * 0.7, abs=0.01)
+
+
+def test_noise_is_a_share_of_the_standard_deviation_over_the_box():
+    assert PROBLEMS["dtlz2"].noise_sd == pytest.approx([0, 0])
+    assert PROBLEMS["hartmann6_noisy"].noise_sd == pytest.approx(
+        0.1 * PROBLEMS["hartmann6"].function(points("hartmann6", 100_000)).std(axis=0), rel=0.02
+    )
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_configuration_has_the_values_of_its_point(name):
+    problem = PROBLEMS[name]
+    X = points(name, 5)
+    found = np.array([problem.evaluate(configuration)[0] for configuration in problem.configurations(X)])
+    assert found == pytest.approx(problem.function(X))
+    assert found.shape == (5, len(problem.objectives))
