@@ -30,10 +30,22 @@ class ResultTable:
         with self.path.open("a", newline="") as file:
             csv.DictWriter(file, self.columns, lineterminator="\n").writerow(row)
 
+    def has(self, case: Mapping[str, Any]) -> bool:
+        """Tell whether a case has its row."""
+        wanted = [str(case[name]) for name in self.key]
+        return any([str(row[name]) for name in self.key] == wanted for row in self.rows)
+
+    def forget(self, column: str, values: Sequence[str]) -> None:
+        """Delete the rows that have one of these values in a column."""
+        self.rows = [row for row in self.rows if row[column] not in values]
+        with self.path.open("w", newline="") as file:
+            writer = csv.DictWriter(file, self.columns, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(self.rows)
+
     def fill(self, case: Mapping[str, Any], measure: Callable[..., Mapping[str, Any]]) -> None:
         """Measure a case, unless it has its row."""
-        wanted = [str(case[name]) for name in self.key]
-        if any([str(row[name]) for name in self.key] == wanted for row in self.rows):
+        if self.has(case):
             return
         row = {
             name: f"{value:.6g}" if isinstance(value, float) else value
