@@ -25,6 +25,8 @@ from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.models import Models
 from hypermap_lite.optimizers.streams import Stream, generator
+from hypermap_lite.pareto.dominance import non_dominated
+from hypermap_lite.pareto.hypervolume import infer_reference_point
 from hypermap_lite.pareto.ranking import crowding_distances, non_dominated_ranks
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization
@@ -44,11 +46,14 @@ MAX_INCUMBENTS = 8
 MAX_FRONT_INCUMBENTS = 12
 """The same, where the whole front is looked at."""
 
-IDEAL_POINTS = 512
-"""Points at which the ideal values of a constrained problem are looked for."""
+SPREAD_POINTS = 512
+"""Points at which the ideal values of a constrained problem, and the ends of a front, are looked for."""
 
-MAX_IDEAL_DRAWS = 8192
+MAX_SPREAD_DRAWS = 8192
 """Draws at most to find as many that known constraints allow."""
+
+SURE = 0.1
+"""Standard deviation, as a share of the front's range, below which a prediction may move the reference point."""
 
 NEXT_TO_NOTHING = math.log(1e-4)
 """Log expected improvement, in normalized objectives, below which a trade-off counts as found."""
@@ -204,6 +209,8 @@ class BayesianOptimizer(Optimizer):
         posterior = self._models.posterior()
         if feasibility is not None:
             normalization = normalization.reaching(self._ideal(posterior, feasibility, rng))
+        if reference_point is None and Y.shape[1] > 1 and not self._method.acquisition.is_scalarizing:
+            reference_point = self._foreseen_reference_point(posterior, feasibility, rng)
         return AcquisitionContext(
             posterior=posterior,
             X=X,
@@ -228,9 +235,27 @@ class BayesianOptimizer(Optimizer):
 
     def _ideal(self, posterior: Posterior, feasibility: FeasibilityPosterior, rng: Rng) -> FloatArray:
         """Return what each objective may come down to where points are allowed and probably feasible, shape (m,)."""
+        return optimistic_ideal(posterior, feasibility, self._spread_points(rng))
+
+    def _foreseen_reference_point(
+        self, posterior: Posterior, feasibility: FeasibilityPosterior | None, rng: Rng
+    ) -> FloatArray:
+        """Return the reference point of the front that the model foresees, shape (m,).
+
+        That of the evaluated points alone would give nothing for an end of the front far from all of them. Only what is
+        predicted well counts: at the beginning a model foresees ends that are none.
+        """
+        X = self._spread_points(rng)
+        if feasibility is not None:
+            X = X[feasibility.log_probability(X) > math.log(0.5)]
+        evaluated, foreseen = posterior.predict(self.history.X()).mean, posterior.predict(X)
+        is_sure = (foreseen.std < SURE * np.ptp(evaluated[non_dominated(evaluated)], axis=0)).all(axis=1)
+        return infer_reference_point(np.vstack([evaluated, foreseen.mean[is_sure]]))
+
+    def _spread_points(self, rng: Rng) -> FloatArray:
+        """Return allowed points all over the space, shape (n, d)."""
         space = self.history.space
-        X = space.draw(IDEAL_POINTS, lambda n: sobol_points(n, space.dimension, rng), MAX_IDEAL_DRAWS)
-        return optimistic_ideal(posterior, feasibility, X)
+        return space.draw(SPREAD_POINTS, lambda n: sobol_points(n, space.dimension, rng), MAX_SPREAD_DRAWS)
 
     def _prior_weight(self) -> float | None:
         """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
