@@ -37,7 +37,7 @@ Member = TypeVar("Member")
 
 SAMPLING_PHASES: Mapping[str, SamplingPhase] = {
     "random_search": SamplingPhase(design=RandomSampling(), name="random"),
-    "prior_sampling": SamplingPhase(design=PriorSampling(), name="prior"),
+    "prior_sampling": SamplingPhase(design=PriorSampling(uniform_share=0.0), name="prior"),
 }
 """What the optimizers without a model do after the initial design."""
 
@@ -300,7 +300,7 @@ def build_method(scenario: Scenario) -> Method:
         if by_feasibility is None
         else build_member(FEASIBILITY_WEIGHTINGS, by_feasibility, "feasibility weighting"),
         maximizer=build_member(MAXIMIZERS, scenario.maximizer, "maximizer"),
-        fallback=PriorSampling(),
+        fallback=PriorSampling(uniform_share=0.0),
         epsilon=scenario.optimizer.options.get("epsilon") or 0.0,
     )
 

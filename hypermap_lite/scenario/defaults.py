@@ -56,6 +56,8 @@ def fill_derived(document: Mapping[str, Any]) -> dict[str, Any]:
     design = dict(derived["design_of_experiment"])
     if design["type"] == "auto":
         design["type"] = "prior_sampling" if has_priors(document) else "sobol"
+        if design["type"] == "sobol":
+            del design["uniform_share"]
     if design["number_of_samples"] is None:
         design["number_of_samples"] = default_samples(document)
     derived["design_of_experiment"] = design

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from hypermap_lite.errors import ScenarioError
-from hypermap_lite.history.added_later import of_older_version
 from hypermap_lite.scenario.building import build_scenario
 from hypermap_lite.scenario.consistency import check_consistency
 from hypermap_lite.scenario.defaults import fill, fill_derived, fill_implied, has_priors
@@ -23,6 +22,7 @@ from hypermap_lite.scenario.presets import PRESETS
 from hypermap_lite.scenario.prior_from import replace_priors
 from hypermap_lite.scenario.prior_points import with_points
 from hypermap_lite.scenario.reading import parse_json
+from hypermap_lite.scenario.recorded import with_old_defaults
 from hypermap_lite.scenario.schemas import root_schema
 from hypermap_lite.scenario.sources import Layer, located
 
@@ -114,7 +114,7 @@ def _translation_of(layer: Layer) -> Translation | None:
 
 def _translated(layer: Layer, translation: Translation | None) -> Layer:
     if translation is None:
-        return replace(layer, document=of_older_version(layer.document))
+        return layer
     return replace(layer, document=translation.document, places=translation.places)
 
 
@@ -130,7 +130,7 @@ def complete_document(document: Mapping[str, Any]) -> dict[str, Any]:
     if document.get("preset"):
         preset = PRESETS[document["preset"]](has_priors=has_priors(document))
         document = merge(root_schema(), preset, document)
-    complete = fill_derived(fill(root_schema(), fill_implied(document)))
+    complete = fill_derived(fill(root_schema(), fill_implied(with_old_defaults(document))))
     check_consistency(complete)
     return complete
 

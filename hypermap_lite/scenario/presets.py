@@ -14,8 +14,9 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
     ----------
     .. [1] Mayr et al. Learning Skill-based Industrial Robot Tasks with User Priors. CASE 2022.
     """
+    design = {"type": "prior_sampling", "uniform_share": 0.0} if has_priors else {"type": "random_sampling"}
     return {
-        "design_of_experiment": {"type": "prior_sampling" if has_priors else "random_sampling"},
+        "design_of_experiment": design,
         "optimizer": {"type": "bayesian"},
         "surrogate": {
             "type": "gaussian_process",

@@ -13,7 +13,7 @@ from hypermap_lite.typing import as_argument
 INDENT = " " * 12
 """Width of the column of headings."""
 
-UNSAID_IF_OFF = ("ends", "redraws", "unbounded")
+UNSAID_IF_OFF = ("ends", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
 
@@ -117,7 +117,7 @@ def _method(scenario: Scenario) -> list[str]:
     """Say which evaluations are chosen how, and what of the scenario decides that."""
     total = scenario.budget.evaluations
     n = min(scenario.design.number_of_samples, total)
-    lines = [f"evaluations 1 to {n}: {scenario.design.type}"]
+    lines = [f"evaluations 1 to {n}: {scenario.design.type}{_options(scenario.design.options)}"]
     acquisition, m = scenario.acquisition, len(scenario.objectives)
     if scenario.optimizer.type != "bayesian":
         lines += [f"evaluations {n + 1} to {total}: {_component(scenario.optimizer)}"] * (n < total)

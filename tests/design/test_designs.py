@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from hypermap_lite.design import DESIGNS
+from hypermap_lite.design import DESIGNS, PriorSampling
+from hypermap_lite.design.prior_sampling import UNIFORM, evenly_spread
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors import (
     AsJoint,
@@ -87,8 +88,44 @@ def test_a_grid_over_a_huge_log_range_is_spread_by_decades() -> None:
 def test_prior_sampling_draws_from_the_prior() -> None:
     space = SearchSpace((RealParameter(name="a", low=0, high=10),))
     prior = ProductPrior(1, (((0,), AsJoint(GaussianPrior(mean=7, std=0.1).on(space.parameters[0]))),))
-    X = DESIGNS["prior_sampling"]().points(space, prior, 200, np.random.default_rng(0))
+    X = PriorSampling(uniform_share=0.0).points(space, prior, 200, np.random.default_rng(0))
     assert X.mean() == pytest.approx(0.7, abs=0.01)
+
+
+def test_a_share_of_prior_sampling_is_spread_over_the_whole_space() -> None:
+    space = SearchSpace((RealParameter(name="a", low=0, high=10),))
+    prior = ProductPrior(1, (((0,), AsJoint(GaussianPrior(mean=7, std=0.1).on(space.parameters[0]))),))
+    X = PriorSampling(uniform_share=0.25).points(space, prior, 32, np.random.default_rng(0))[:, 0]
+    is_uniform = np.arange(32) % 4 == 3
+    assert X[~is_uniform] == pytest.approx(np.full(24, 0.7), abs=0.05)
+    assert sorted(np.floor(8 * X[is_uniform])) == list(range(8))
+
+
+def test_prior_sampling_says_which_of_its_points_come_from_the_prior() -> None:
+    space = SearchSpace((RealParameter(name="a", low=0, high=10),))
+    prior = ProductPrior(1, (((0,), AsJoint(GaussianPrior(mean=7, std=0.1).on(space.parameters[0]))),))
+    design = PriorSampling(uniform_share=0.5)
+    X = design.points(space, prior, 6, np.random.default_rng(1))
+    origins = design.origins(space, prior, 6, np.random.default_rng(1))
+    assert [origins[key] for key in space.keys(X)] == [0, UNIFORM, 2, UNIFORM, 4, UNIFORM]
+
+
+@pytest.mark.parametrize(
+    ("n", "share", "places"), [(8, 0.25, [3, 7]), (6, 0.25, [2, 5]), (1, 0.25, []), (3, 1, [0, 1, 2])]
+)
+def test_places_are_spread_evenly(n: int, share: float, places: list[int]) -> None:
+    assert np.flatnonzero(evenly_spread(n, share)).tolist() == places
+
+
+def test_without_a_prior_there_is_nothing_to_spread() -> None:
+    space, generator = space_of("half"), np.random.default_rng
+    plain = PriorSampling(uniform_share=0.0).points(space, ProductPrior(2), 9, generator(3))
+    assert (PriorSampling(uniform_share=0.5).points(space, ProductPrior(2), 9, generator(3)) == plain).all()
+
+
+def test_a_share_above_one_is_refused() -> None:
+    with pytest.raises(ScenarioError, match=r"\$\.uniform_share: the share is 1.5"):
+        PriorSampling(uniform_share=1.5)
 
 
 def by_level(space: SearchSpace, name: str, X: np.ndarray) -> dict[object, int]:
@@ -221,6 +258,6 @@ def test_sobol_points_stay_evenly_spread_where_constraints_reject_some() -> None
 def test_prior_sampling_draws_from_the_prior_given_the_constraints() -> None:
     space = space_of("half")
     prior = ProductPrior(2, (((0,), AsJoint(GaussianPrior(mean=0.9, std=0.05).on(space.parameters[0]))),))
-    X = DESIGNS["prior_sampling"]().points(space, prior, 500, np.random.default_rng(0))
+    X = PriorSampling(uniform_share=0.0).points(space, prior, 500, np.random.default_rng(0))
     assert (X.sum(axis=1) <= 1).all()
     assert np.quantile(X[:, 0], [0.02, 0.98]) == pytest.approx([0.75, 0.94], abs=0.05)  # pulled below 0.9

@@ -176,7 +176,13 @@ def test_bopro_runs_with_categories_batches_and_failures_and_counts_its_suggesti
 def test_bopro_goes_where_the_prior_points_until_the_model_knows_better() -> None:
     acquisition = {"prior_weighting": {"method": "bopro", "model_weight": 4.0}}
     wrong = {"a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.9, "std": 0.05}}}
-    scenario = scenario_of(input_parameters=wrong, acquisition=acquisition, objectives=[{"name": "near"}])
+    design = {"type": "prior_sampling", "uniform_share": 0, "number_of_samples": 5}
+    scenario = scenario_of(
+        input_parameters=wrong,
+        acquisition=acquisition,
+        objectives=[{"name": "near"}],
+        design_of_experiment=design,
+    )
     optimizer = run(scenario, 25, function=lambda c: {"near": (c["a"] - 0.2) ** 2})
     a = [c["a"] for c in configurations(optimizer)]
     assert a[5] > 0.7

@@ -75,7 +75,9 @@ def test_a_constrained_optimum_at_the_edge_is_found() -> None:
 def test_priors_pull_within_what_is_allowed() -> None:
     prior = {"type": "gaussian", "mean": 0.8, "std": 0.05}
     parameters = {name: {"parameter_type": "real", "values": [0, 1], "prior": prior} for name in "ab"}
-    optimizer = run(scenario_of(input_parameters=parameters, constraints=["a + b <= 1.4"]), 8, function=objectives)
+    design = {"type": "prior_sampling", "uniform_share": 0, "number_of_samples": 5}
+    scenario = scenario_of(input_parameters=parameters, constraints=["a + b <= 1.4"], design_of_experiment=design)
+    optimizer = run(scenario, 8, function=objectives)
     X = np.array([list(e.configuration.values()) for e in optimizer.history])
     assert (X.sum(axis=1) <= 1.4).all()
     assert X[:5].min() > 0.5

@@ -83,7 +83,7 @@ def _translate_design(draft: Draft) -> None:
     reading, path = draft.reading, "design_of_experiment"
     name, samples = reading[f"{path}.doe_type"], reading[f"{path}.number_of_samples"]
     iterations = reading["optimization_iterations"] * draft.document.get("budget", {}).get("batch_size", 1)
-    draft.set(f"{path}.type", _design(draft, name), f"{path}.doe_type")
+    _set_design(draft, name, f"{path}.doe_type")
     old = _translate_resumption(draft)
     if name == "grid_search":
         samples, iterations = grid_size(draft), 0
@@ -97,6 +97,14 @@ def _translate_design(draft: Draft) -> None:
         raise ScenarioError(f"$.{path}.number_of_samples", problem, allowed="one of the two > 0")
     draft.set(f"{path}.number_of_samples", max(samples, 1), f"{path}.number_of_samples")
     draft.set("budget.evaluations", evaluations, "optimization_iterations")
+
+
+def _set_design(draft: Draft, name: str, key: str) -> None:
+    """Set the type of the design by HyperMapper's name of it; all draws follow the priors, or none."""
+    kind = _design(draft, name)
+    draft.set("design_of_experiment.type", kind, key)
+    if kind == "prior_sampling":
+        draft.set("design_of_experiment.uniform_share", 0.0, key)
 
 
 def _design(draft: Draft, name: str) -> str:
@@ -162,7 +170,7 @@ def _translate_climbs(draft: Draft) -> None:
     reading = draft.reading
     points, limit = 2 * reading["local_search_random_points"], reading["local_search_evaluation_limit"]
     evaluations = points + CLIMBS if limit < 1 else limit
-    draft.set("design_of_experiment.type", _design(draft, "random sampling"), "optimization_method")
+    _set_design(draft, "random sampling", "optimization_method")
     for place in ("design_of_experiment.number_of_samples", "optimizer.random_points"):
         draft.set(place, min(points, evaluations), "local_search_random_points")
     draft.set("budget.evaluations", evaluations, "local_search_evaluation_limit")
@@ -175,7 +183,7 @@ def _translate_generations(draft: Draft) -> None:
     """Translate the budget of evolutionary search: a population, then one evaluation per generation."""
     reading = draft.reading
     population = reading["evolution_population_size"]
-    draft.set("design_of_experiment.type", _design(draft, "random sampling"), "optimization_method")
+    _set_design(draft, "random sampling", "optimization_method")
     draft.set("design_of_experiment.number_of_samples", population, "evolution_population_size")
     evaluations = population + reading["evolution_generations"]
     draft.set("budget.evaluations", evaluations, "evolution_generations")
