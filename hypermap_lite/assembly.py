@@ -26,6 +26,7 @@ from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.model_free import ModelFreeOptimizer
 from hypermap_lite.optimizers.sampling import SamplingOptimizer, SamplingPhase
 from hypermap_lite.priors import JOINT_PRIORS, PRIORS, AsJoint, Density, JointDensity, ProductPrior
+from hypermap_lite.priors.beliefs import Belief, completed, together
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS, BoundingBox, WeightSampling
 from hypermap_lite.scenario.model import ComponentSpec, ParameterSpec, Scenario
 from hypermap_lite.space import PARAMETERS, Constraint, Parameter, SearchSpace
@@ -152,7 +153,18 @@ def require_allowed(space: SearchSpace) -> None:
 
 
 def build_prior(scenario: Scenario, space: SearchSpace) -> ProductPrior:
-    """Make the whole belief: the product of the priors on single parameters and on groups of them.
+    """Make the whole belief: the common priors, or the equal mixture of those of the objectives.
+
+    Raises
+    ------
+    ScenarioError
+        As `build_common_prior`.
+    """
+    return together(build_beliefs(scenario, space))
+
+
+def build_common_prior(scenario: Scenario, space: SearchSpace) -> ProductPrior:
+    """Make the product of the priors on single parameters and on groups of them, for all objectives.
 
     Raises
     ------
@@ -166,6 +178,39 @@ def build_prior(scenario: Scenario, space: SearchSpace) -> ProductPrior:
             owners[spec.name] = spec.prior.path
             factors.append(((j,), AsJoint(_marginal_density(spec, spec.prior, space.parameters[j]))))
     factors.extend(_joint_factor(joint, space, owners) for joint in scenario.joint_priors)
+    return ProductPrior(space.dimension, tuple(factors))
+
+
+def build_beliefs(scenario: Scenario, space: SearchSpace) -> tuple[Belief, ...]:
+    """Make the priors that suggestions follow: one for all objectives, or one per objective that has any.
+
+    An objective's own priors are completed by the common ones; with common priors, every objective has some.
+
+    Raises
+    ------
+    ScenarioError
+        As `build_prior`.
+    """
+    common = build_common_prior(scenario, space)
+    own = {entry.objective: entry.priors for entry in scenario.objective_priors}
+    if not own:
+        return (Belief(prior=common),)
+    beliefs = []
+    for i, objective in enumerate(scenario.objectives):
+        specs = own.get(objective.name, {})
+        prior = completed(_product(scenario, space, specs), common)
+        if not prior.is_uniform:
+            beliefs.append(Belief(prior=prior, name=objective.name, objective=i))
+    return tuple(beliefs)
+
+
+def _product(scenario: Scenario, space: SearchSpace, priors: Mapping[str, ComponentSpec]) -> ProductPrior:
+    """Return the product of priors on single parameters."""
+    places = {spec.name: (j, spec) for j, spec in enumerate(scenario.parameters)}
+    factors = []
+    for name, prior in priors.items():
+        j, spec = places[name]
+        factors.append(((j,), AsJoint(_marginal_density(spec, prior, space.parameters[j]))))
     return ProductPrior(space.dimension, tuple(factors))
 
 
@@ -227,6 +272,7 @@ def build_optimizer(scenario: Scenario, history: History | None = None) -> Optim
             budget=scenario.budget.evaluations,
             seed=scenario.seed,
             batch_size=scenario.budget.batch_size,
+            beliefs=build_beliefs(scenario, history.space),
         )
     if scenario.optimizer.type in SAMPLING_PHASES:
         sampling = SAMPLING_PHASES[scenario.optimizer.type]
@@ -259,7 +305,8 @@ def build_initial(
 ) -> InitialPhase:
     """Make the trials that come before everything else; evaluations of an earlier experiment are in the history."""
     n = scenario.design.number_of_samples
-    return InitialPhase(space, prior, build_design(scenario), n, scenario.seed, history)
+    names = [belief.name for belief in build_beliefs(scenario, space)]
+    return InitialPhase(space, prior, build_design(scenario), n, scenario.seed, history, names)
 
 
 def build_plan(scenario: Scenario) -> BatchPlan:

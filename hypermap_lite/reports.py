@@ -11,7 +11,8 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.history.history import History
 from hypermap_lite.objectives import Objective
 from hypermap_lite.optimizers.base import single_threaded
-from hypermap_lite.optimizers.bayesian import MIN_COMPLETED, BayesianOptimizer
+from hypermap_lite.optimizers.bayesian import BayesianOptimizer
+from hypermap_lite.optimizers.models import MIN_COMPLETED
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.scenario.model import ComponentSpec, Scenario

@@ -183,6 +183,7 @@ def run_scenario(
         canonical=scenario.canonical,
         function=None if function is None else name_of(function),
         feasible_output=scenario.feasible_output,
+        prior_columns=scenario.prior_columns,
         samples_file=_path(scenario.output.samples_file),
         pareto_file=_path(scenario.output.pareto_file),
         first_rows=earlier.rows,

@@ -87,6 +87,16 @@ class Acquisition(Protocol):
 class PriorWeighting(Protocol):
     """Options of how the user's prior enters the choice, and for how long."""
 
+    @property
+    def prior_free(self) -> float:
+        """Share of the model-based suggestions that leave the prior out, in [0, 1]."""
+        ...
+
+    @property
+    def safeguard(self) -> bool:
+        """Whether the prior is checked against the evaluations, and loses its weight where it misleads."""
+        ...
+
     def weight(self, n: int, model_budget: int) -> float:
         """Return the exponent of the prior at the n-th model-based suggestion, n >= 1, of a budget of so many."""
         ...

@@ -10,7 +10,7 @@ from scipy.special import erfcx, log_expit, log_ndtr
 
 from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Scorer
 from hypermap_lite.acquisition.improvement import SMOOTHING, log_sum_exp
-from hypermap_lite.acquisition.prior_weighted import PriorWeighted
+from hypermap_lite.acquisition.prior_weighted import PriorWeighted, check_prior_free
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization, Scalarization
@@ -51,7 +51,14 @@ class Bopro:
     floor: float = 0.01
     """f: least probability in the prior's opinion, in (0, 1/2)."""
 
+    prior_free: float = 0.25
+    """Share of the suggestions that leave the prior out, in [0, 1]."""
+
+    safeguard: bool = True
+    """Whether the prior is checked against the evaluations, and loses its weight where it misleads."""
+
     def __post_init__(self) -> None:
+        check_prior_free(self.prior_free)
         if not self.model_weight > 0:
             raise ScenarioError("$.model_weight", f"the weight is {self.model_weight}", allowed="a number > 0")
         if not 0 < self.good_quantile < 1:

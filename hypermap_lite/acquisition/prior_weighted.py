@@ -35,7 +35,14 @@ class Pibo:
     unbounded: bool = False
     """Whether a density that is unbounded at a bound counts in full next to it, instead of no more than its peak."""
 
+    prior_free: float = 0.25
+    """Share of the suggestions that leave the prior out, in [0, 1]."""
+
+    safeguard: bool = True
+    """Whether the prior is checked against the evaluations, and loses its weight where it misleads."""
+
     def __post_init__(self) -> None:
+        check_prior_free(self.prior_free)
         if self.beta is not None and not self.beta >= 0:
             raise ScenarioError("$.beta", f"the strength is {self.beta}", allowed="a number >= 0, or null")
         if not 0 <= self.floor < 1:
@@ -112,3 +119,9 @@ class PriorWeighted:
     def _log_share(self, X: FloatArray) -> FloatArray:
         """Return log((1 - floor) density / peak), shape (n,), no more than the cap."""
         return math.log1p(-self.floor) + np.minimum(self.prior.log_density(X) - self._log_peak, self._log_cap)
+
+
+def check_prior_free(share: float) -> None:
+    """Raise a `ScenarioError` if the share of suggestions without the prior is none."""
+    if not 0 <= share <= 1:
+        raise ScenarioError("$.prior_free", f"the share is {share}", allowed="in [0, 1]")

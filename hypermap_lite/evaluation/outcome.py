@@ -74,7 +74,13 @@ class Suggestion:
     """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``prior``, or a search."""
 
     prior_weight: float | None = None
-    """Exponent the user prior had in the choice; None where it had no part."""
+    """Exponent the user prior had in the choice, 0 in a prior-free step; None where there is nothing to weigh."""
+
+    prior_trust: float | None = None
+    """What is left of the prior's weight after the checks so far, 1, 0.5, 0.25 or 0; None without checks."""
+
+    prior_of: str = ""
+    """Objective whose prior was followed; empty if all share one."""
 
     acquisition_value: float | None = None
     """Value of the maximized acquisition function; None outside the model phase."""

@@ -21,9 +21,23 @@ from hypermap_lite.history.csv_format import (
 from hypermap_lite.objectives import FeasibleOutput, Objective
 from hypermap_lite.space.search_space import SearchSpace
 
+PRIOR_COLUMNS = ("prior_trust", "prior_of")
+"""Columns after ``prior_weight`` of runs whose priors are checked, and of those whose objectives have their own."""
+
 HISTORY_TAIL = ("prior_weight", "acquisition_value", "suggest_seconds", "evaluate_seconds", "error")
 RESERVED_COLUMNS = frozenset(
-    {"Timestamp", "trial", "phase", "state", "replicates", "replicate", "seed", "seconds", *HISTORY_TAIL}
+    {
+        "Timestamp",
+        "trial",
+        "phase",
+        "state",
+        "replicates",
+        "replicate",
+        "seed",
+        "seconds",
+        *HISTORY_TAIL,
+        *PRIOR_COLUMNS,
+    }
 )
 """Names that parameters and objectives should not have, for then a column would have two meanings."""
 
@@ -32,21 +46,31 @@ METRIC_PREFIX = "result."
 
 
 class HistoryFormat:
-    """Columns and rows of ``history.csv`` for one search space, one list of objectives and a feasibility, if any."""
+    """Columns and rows of ``history.csv`` for one search space, one list of objectives and a feasibility, if any.
+
+    Those of `PRIOR_COLUMNS` are there where the run has something to say in them.
+    """
 
     def __init__(
-        self, space: SearchSpace, objectives: Sequence[Objective], feasible_output: FeasibleOutput | None = None
+        self,
+        space: SearchSpace,
+        objectives: Sequence[Objective],
+        feasible_output: FeasibleOutput | None = None,
+        prior_columns: Sequence[str] = (),
     ) -> None:
         self.space = space
         self.names = tuple(o.name for o in objectives)
         self.flags = flags_of(feasible_output)
+        self._prior_columns = tuple(column for column in PRIOR_COLUMNS if column in prior_columns)
         self.columns: tuple[str, ...] = (
             *space.names,
             *self.names,
             *(flag.name for flag in self.flags),
             *("Timestamp", "trial", "phase", "state", "replicates"),
             *(f"{name}_sem" for name in self.names),
-            *HISTORY_TAIL,
+            *HISTORY_TAIL[:1],
+            *self._prior_columns,
+            *HISTORY_TAIL[1:],
         )
 
     def format(self, evaluation: Evaluation) -> str:
@@ -61,6 +85,7 @@ class HistoryFormat:
                 *(evaluation.state.value, str(evaluation.replicates)),
                 *(format_number(evaluation.standard_errors.get(name)) for name in self.names),
                 format_number(suggestion.prior_weight),
+                *(_prior_text(suggestion, column) for column in self._prior_columns),
                 format_number(suggestion.acquisition_value),
                 f"{suggestion.seconds:.6f}",
                 f"{evaluation.seconds:.6f}",
@@ -73,7 +98,10 @@ class HistoryFormat:
         d, m = self.space.dimension, len(self.names)
         facts = d + m + len(self.flags)
         timestamp, trial, phase, state, replicates = record[facts : facts + 5]
-        weight, acquisition, suggest_seconds, evaluate_seconds, error = record[facts + m + 5 :]
+        weight, *of_prior = record[facts + m + 5 : -4]
+        acquisition, suggest_seconds, evaluate_seconds, error = record[-4:]
+        shown = dict(zip(self._prior_columns, of_prior, strict=True))
+        trust = shown.get("prior_trust")
         check_flags(self.flags, record[d + m : facts], State(state))
         values = parse_values(self.names, record[d : d + m])
         suggestion = Suggestion(
@@ -81,6 +109,8 @@ class HistoryFormat:
             configuration=parse_configuration(self.space, record[:d]),
             phase=phase,
             prior_weight=float(weight) if weight else None,
+            prior_trust=float(trust) if trust else None,
+            prior_of=shown.get("prior_of", ""),
             acquisition_value=float(acquisition) if acquisition else None,
             seconds=float(suggest_seconds),
         )
@@ -101,6 +131,10 @@ class HistoryFormat:
             for name, text in zip(self.names, fields, strict=True)
             if name in values
         }
+
+
+def _prior_text(suggestion: Suggestion, column: str) -> str:
+    return suggestion.prior_of if column == "prior_of" else format_number(suggestion.prior_trust)
 
 
 class EvaluationsFormat:
@@ -191,7 +225,7 @@ def read_history(
 ) -> list[Evaluation]:
     """Read a ``history.csv``, given itself or its run folder; an absent file has no rows.
 
-    A file without the column of the feasibility is read all the same.
+    A file without the column of the feasibility, or with those of other priors, is read all the same.
 
     Raises
     ------
@@ -200,12 +234,12 @@ def read_history(
     """
     file = Path(path)
     file = file / "history.csv" if file.is_dir() else file
-    form = HistoryFormat(space, objectives, feasible_output)
     records = read_records(file)
     if not records:
         return []
     if feasible_output is not None and feasible_output.name not in records[0]:
-        form = HistoryFormat(space, objectives)
+        feasible_output = None
+    form = HistoryFormat(space, objectives, feasible_output, records[0])
     check_header(file, records[0], form.columns)
     rows = parse_rows(file, records, form.parse)
     for number, row in enumerate(rows):

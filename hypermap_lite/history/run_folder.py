@@ -49,6 +49,8 @@ class RunFolder:
         Name of the Python function that is called in place of the scenario's evaluator, if one was passed.
     feasible_output
         The column that says which configurations are feasible, if there is one.
+    prior_columns
+        Columns that say more of the priors than their weight, of `PRIOR_COLUMNS`.
     samples_file, pareto_file
         Files in HyperMapper's format that are kept up to date with it; see `Exports`.
     first_rows
@@ -64,6 +66,7 @@ class RunFolder:
         canonical: Mapping[str, Any],
         function: str | None = None,
         feasible_output: FeasibleOutput | None = None,
+        prior_columns: Sequence[str] = (),
         samples_file: Path | None = None,
         pareto_file: Path | None = None,
         first_rows: Callable[[], Sequence[Evaluation]] = tuple,
@@ -78,7 +81,7 @@ class RunFolder:
         self.replicates: dict[tuple[int, int], Replicate] = {}
         """Rows of ``evaluations.csv`` by trial and replicate."""
         self.feasible_output = feasible_output
-        self._history = HistoryFormat(space, objectives, feasible_output)
+        self._history = HistoryFormat(space, objectives, feasible_output, prior_columns)
         self._calls = EvaluationsFormat(space, objectives, feasible_output=feasible_output)
         self._exports = Exports(self._history, samples_file=samples_file, pareto_file=pareto_file)
         self._first_rows = first_rows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,13 +22,15 @@ from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem
 from hypermap_lite.objectives import reference_point_of
 from hypermap_lite.optimizers.base import Optimizer
+from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
-from hypermap_lite.optimizers.models import Models
+from hypermap_lite.optimizers.models import MIN_COMPLETED, Models
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.pareto.hypervolume import infer_reference_point
 from hypermap_lite.pareto.ranking import crowding_distances, non_dominated_ranks
+from hypermap_lite.priors.beliefs import Belief
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization
 from hypermap_lite.surrogates.base import Posterior
@@ -36,9 +39,6 @@ from hypermap_lite.typing import FloatArray, Rng
 
 MODEL = "model"
 """Phase of a suggestion that comes from the model."""
-
-MIN_COMPLETED = 2
-"""With fewer completed evaluations there is no objective to model."""
 
 MAX_INCUMBENTS = 8
 """Best points whose surroundings are searched."""
@@ -90,6 +90,7 @@ class BayesianOptimizer(Optimizer):
         budget: int,
         seed: int,
         batch_size: int = 1,
+        beliefs: Sequence[Belief] = (),
     ) -> None:
         super().__init__(history)
         self._prior = prior
@@ -99,6 +100,7 @@ class BayesianOptimizer(Optimizer):
         self._batch_size = batch_size
         self._seed = seed
         self._models = Models(history, method.surrogate, method.feasibility_weighting, seed)
+        self._guide = Guide(beliefs or (Belief(prior=prior),), method.prior_weighting, history.space, seed)
 
     def posterior(self) -> Posterior:
         """Return what the surrogate knows after the completed evaluations, of which there must be one."""
@@ -114,10 +116,12 @@ class BayesianOptimizer(Optimizer):
         rng = generator(self._seed, Stream.SUGGESTION, trial)
         has_objectives = len(self.history.completed) >= MIN_COMPLETED
         feasibility = self._models.feasibility(searching=None if has_objectives else self.in_flight)
+        guidance = self._guidance(trial)
         if has_objectives:
-            return self._with_model(trial, rng, feasibility)
+            return self._with_model(trial, rng, feasibility, guidance)
         if feasibility is not None:
-            return self._by_score(self._searching(feasibility), self.history.X(), trial, rng)
+            scorer = self._searching(feasibility, guidance)
+            return self._by_score(scorer, self.history.X(), trial, rng, guidance)
         return self._drawn_by(self._method.fallback, trial, rng)
 
     def _drawn_by(self, design: InitialDesign, trial: int, rng: Rng) -> Suggestion | None:
@@ -129,7 +133,9 @@ class BayesianOptimizer(Optimizer):
             return None
         return Suggestion(trial=trial, configuration=space.decode(new[:1])[0], phase="random")
 
-    def _with_model(self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None) -> Suggestion | None:
+    def _with_model(
+        self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None, guidance: Guidance
+    ) -> Suggestion | None:
         """Return the best point at a drawn trade-off; weights at which none promises anything may be drawn again."""
         has_weights = self._method.acquisition.is_scalarizing and len(self.history.objectives) > 1
         n_draws = 1 + self._method.weights.redraws * has_weights
@@ -138,7 +144,8 @@ class BayesianOptimizer(Optimizer):
         for k in range(n_draws):
             if k:
                 context = replace(context, weights=self._weights(context.normalization, rng))
-            suggestion = self._by_score(self._scorer(context, feasibility), self._incumbents(context), trial, rng)
+            scorer = self._scorer(context, feasibility, guidance)
+            suggestion = self._by_score(scorer, self._incumbents(context), trial, rng, guidance)
             if n_draws == 1:
                 return suggestion
             if suggestion is None:
@@ -160,32 +167,36 @@ class BayesianOptimizer(Optimizer):
     def _weights(self, normalization: Normalization, rng: Rng) -> FloatArray:
         return self._method.weights.sample(self.history.objectives, normalization, rng)
 
-    def _scorer(self, context: AcquisitionContext, feasibility: FeasibilityPosterior | None) -> Scorer:
+    def _scorer(
+        self, context: AcquisitionContext, feasibility: FeasibilityPosterior | None, guidance: Guidance
+    ) -> Scorer:
         """Return the acquisition function, with the prior and the probability of being feasible where they count."""
-        acquisition, weighting, weight = self._method.acquisition, self._method.prior_weighting, self._prior_weight()
+        acquisition, weighting = self._method.acquisition, self._method.prior_weighting
         if feasibility is not None and not acquisition.is_logarithmic:
             acquisition = Improving(acquisition)
-        if weighting is None or not weight:
+        if weighting is None or not guidance.weight:
             scorer = acquisition.scorer(context)
         else:
-            scorer = weighting.scorer(acquisition, context, self._prior, weight)
+            scorer = weighting.scorer(acquisition, context, guidance.belief.prior, guidance.weight)
         by_feasibility = self._method.feasibility_weighting
         return scorer if feasibility is None or by_feasibility is None else by_feasibility.weigh(scorer, feasibility)
 
-    def _searching(self, feasibility: FeasibilityPosterior) -> Scorer:
+    def _searching(self, feasibility: FeasibilityPosterior, guidance: Guidance) -> Scorer:
         """Return the search for the first feasible points, with the prior where it counts."""
         scorer = FeasibilitySearch(feasibility=feasibility)
-        weighting, weight = self._method.prior_weighting, self._prior_weight()
-        return scorer if weighting is None or not weight else weighting.weigh(scorer, self._prior, weight)
+        weighting, weight = self._method.prior_weighting, guidance.weight
+        return scorer if weighting is None or not weight else weighting.weigh(scorer, guidance.belief.prior, weight)
 
-    def _by_score(self, scorer: Scorer, incumbents: FloatArray, trial: int, rng: Rng) -> Suggestion | None:
+    def _by_score(
+        self, scorer: Scorer, incumbents: FloatArray, trial: int, rng: Rng, guidance: Guidance
+    ) -> Suggestion | None:
         """Return the new point of the best score, near the incumbents or anywhere else."""
         space = self.history.space
         best = self._method.maximizer.maximize(
             MaximizationProblem(
                 scorer=scorer,
                 space=space,
-                prior=self._prior,
+                prior=guidance.belief.prior,
                 incumbents=incumbents,
                 seen=self.taken_keys(),
                 rng=rng,
@@ -198,7 +209,9 @@ class BayesianOptimizer(Optimizer):
             trial=trial,
             configuration=configuration,
             phase=MODEL,
-            prior_weight=self._prior_weight(),
+            prior_weight=guidance.weight,
+            prior_trust=guidance.trust,
+            prior_of=guidance.belief.name,
             acquisition_value=best.score,
         )
 
@@ -257,12 +270,17 @@ class BayesianOptimizer(Optimizer):
         space = self.history.space
         return space.draw(SPREAD_POINTS, lambda n: sobol_points(n, space.dimension, rng), MAX_SPREAD_DRAWS)
 
-    def _prior_weight(self) -> float | None:
-        """Return the prior's exponent, decaying with the number of model-based suggestions before this one."""
-        if self._method.prior_weighting is None or self._prior.is_uniform:
-            return None
+    def _guidance(self, trial: int) -> Guidance:
+        """Return the part of the prior in a suggestion, decaying with the model-based suggestions before it."""
         n_in_all = self._budget - len(self._initial) + self._initial.n_beyond
-        return self._method.prior_weighting.weight(1 + self._n_model_based(), max(n_in_all, 1))
+        return self._guide.guidance(
+            trial,
+            n=1 + self._n_model_based(),
+            model_budget=max(n_in_all, 1),
+            history=list(self.history),
+            first=len(self._initial),
+            evidence=self._models.evidence,
+        )
 
     def _incumbents(self, context: AcquisitionContext) -> FloatArray:
         """Return the observed points worth refining, shape (k, d), best first by their predicted means.

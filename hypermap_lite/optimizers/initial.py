@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import takewhile
 
 import numpy as np
 
 from hypermap_lite.design.base import InitialDesign
+from hypermap_lite.design.prior_sampling import UNIFORM, PriorSampling
 from hypermap_lite.evaluation.outcome import EARLIER, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.streams import Stream, generator
@@ -37,6 +40,8 @@ class InitialPhase:
         Of the scenario.
     history
         Of the run; its first rows may be those of an earlier experiment.
+    names
+        Of the objectives whose priors the draws take in turn; one empty name if all share one.
     """
 
     def __init__(
@@ -47,6 +52,7 @@ class InitialPhase:
         n: int,
         seed: int,
         history: History | None = None,
+        names: Sequence[str] = ("",),
     ) -> None:
         self._space = space
         self._prior = prior
@@ -54,6 +60,8 @@ class InitialPhase:
         self._n = n
         self._seed = seed
         self._history = history
+        self._names = tuple(names)
+        self._origins: dict[bytes, int] = {}
         self._drawn: tuple[int, list[Configuration]] | None = None
 
     @cached_property
@@ -99,6 +107,7 @@ class InitialPhase:
         X = space.encode([] if self.default is None else [self.default])
         X = X[space.unseen(X, taken)][:n]
         if len(X) < n:
+            self._origins = self._origins_of(n - len(X))
             X = np.vstack([X, self._design.points(space, self._prior, n - len(X), rng)])
         X = X[space.unseen(X, taken)]
         if earlier and len(X) < n:  # some points are among the earlier ones, so that others take their place
@@ -108,6 +117,15 @@ class InitialPhase:
         if self._starts_with_default(X) and not space.contains(configurations[0]):
             configurations[0] = self.default or {}  # its last digits matter to a constraint
         return configurations
+
+    def _origins_of(self, n: int) -> dict[bytes, int]:
+        """Return where the points of the design come from, if they come from several places."""
+        design = self._design
+        if not isinstance(design, PriorSampling) or self._prior.is_uniform:
+            return {}
+        if not design.uniform_share and len(self._names) == 1:
+            return {}
+        return design.origins(self._space, self._prior, n, generator(self._seed, Stream.DESIGN))
 
     def _starts_with_default(self, X: FloatArray) -> bool:
         """Tell whether the default is the first of n points, shape (n, d)."""
@@ -122,5 +140,13 @@ class InitialPhase:
         """Return the suggestion of one of the first trials that are not those of an earlier experiment."""
         configuration = self.configurations[trial - self.n_earlier]
         is_first = trial == self.n_earlier
-        is_default = is_first and self._starts_with_default(self._space.encode([configuration]))
-        return Suggestion(trial=trial, configuration=configuration, phase="default" if is_default else "design")
+        x = self._space.encode([configuration])
+        if is_first and self._starts_with_default(x):
+            return Suggestion(trial=trial, configuration=configuration, phase="default")
+        suggestion = Suggestion(trial=trial, configuration=configuration, phase="design")
+        origin = self._origins.get(self._space.keys(x)[0])
+        if origin is None:
+            return suggestion
+        if origin == UNIFORM:
+            return replace(suggestion, prior_weight=0.0)
+        return replace(suggestion, prior_weight=1.0, prior_of=self._names[origin % len(self._names)])

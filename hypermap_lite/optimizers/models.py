@@ -10,10 +10,15 @@ import numpy as np
 from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighting
 from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
+from hypermap_lite.objectives import reference_point_of
+from hypermap_lite.optimizers.prior_trust import Evidence
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.surrogates.base import Posterior, Surrogate
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.typing import FloatArray
+
+MIN_COMPLETED = 2
+"""With fewer completed evaluations there is no objective to model."""
 
 FIRST_MILESTONE = 8
 """Hyperparameters are fitted on the first 8 evaluations, then at numbers that grow by the surrogate's factor.
@@ -56,13 +61,31 @@ class Models:
             self._posterior_of = (len(X), self._fit(X, Y))
         return self._posterior_of[1]
 
-    def feasibility(self, searching: Sequence[Suggestion] | None = None) -> FeasibilityPosterior | None:
-        """Return what is known of the feasibility; None if no evaluation has been infeasible.
+    def evidence(self, n: int) -> Evidence | None:
+        """Return what was known when the history had n rows; None if next to nothing."""
+        rows = list(self._history)[:n]
+        k = sum(row.is_completed for row in rows)
+        if k < MIN_COMPLETED:
+            return None
+        X, Y = self._history.X(), self._history.Y()
+        feasibility = self.feasibility(n=sum(row.state.is_feasible is not None for row in rows))
+        return Evidence(
+            posterior=self.posterior() if k == len(X) else self._fit(X[:k], Y[:k]),
+            X=X[:k],
+            X_all=self._history.X_all()[:n],
+            reference_point=reference_point_of(self._history.objectives),
+            log_probability=None if feasibility is None else feasibility.log_probability,
+        )
+
+    def feasibility(
+        self, searching: Sequence[Suggestion] | None = None, n: int | None = None
+    ) -> FeasibilityPosterior | None:
+        """Return what is known of the feasibility, or what the first n told of it; None if none was infeasible.
 
         While there is nothing but this to go by, the pending suggestions are given as `searching`: they count as
         infeasible, so that a batch spreads.
         """
-        X, is_feasible = self._history.feasibility()
+        X, is_feasible = (known[:n] for known in self._history.feasibility())
         if self._feasibility_weighting is None or is_feasible.all():
             return None
         if self._feasibility_of is None or self._feasibility_of[0] != len(X) or searching is not None:

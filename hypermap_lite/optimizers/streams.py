@@ -18,6 +18,8 @@ class Stream(IntEnum):
     EXPLORATION = 3
     NEIGHBOURS = 4
     RESTART = 5
+    PRIOR = 6
+    TRUST = 7
     REPORT = 16
 
 

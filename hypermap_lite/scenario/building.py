@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.objectives import FeasibleOutput, Goal, Objective
+from hypermap_lite.scenario.defaults import has_own_belief, is_belief
 from hypermap_lite.scenario.model import (
     AcquisitionSpec,
     BudgetSpec,
     ComponentSpec,
     DesignSpec,
     EvaluatorSpec,
+    ObjectivePriors,
     OutputSpec,
     ParameterSpec,
     Scenario,
@@ -37,6 +39,7 @@ def build_scenario(
         constraints=tuple(document["constraints"]),
         joint_priors=tuple(_component(prior, f"$.priors[{i}]") for i, prior in enumerate(document["priors"])),
         objectives=tuple(_objective(entry) for entry in document["objectives"]),
+        objective_priors=tuple(_objective_priors(document["objectives"])),
         design=_design(document["design_of_experiment"]),
         feasible_output=_feasible_output(document["feasible_output"]),
         budget=BudgetSpec(**document["budget"]),
@@ -79,6 +82,15 @@ def _parameter(name: str, entry: Mapping[str, Any]) -> ParameterSpec:
 
 def _objective(entry: Mapping[str, Any]) -> Objective:
     return Objective(name=entry["name"], goal=Goal(entry["goal"]), reference_point=entry["reference_point"])
+
+
+def _objective_priors(entries: Sequence[Mapping[str, Any]]) -> Iterator[ObjectivePriors]:
+    for i, entry in enumerate(entries):
+        if has_own_belief(entry):
+            path = f"$.objectives[{i}].priors"
+            specs = {name: _component(prior, f"{path}.{name}") for name, prior in entry["priors"].items() if prior}
+            said = {name: spec for name, spec in specs.items() if is_belief(spec.type, spec.options)}
+            yield ObjectivePriors(objective=entry["name"], priors=said)
 
 
 def _design(section: Mapping[str, Any]) -> DesignSpec:

@@ -95,7 +95,13 @@ def _n_grid_levels(parameter: Mapping[str, Any], levels: int) -> int:
 
 def has_priors(document: Mapping[str, Any]) -> bool:
     """Tell whether a document says anything about where the optimum lies."""
-    return bool(document.get("priors")) or any(map(has_belief, document["input_parameters"].values()))
+    own = (has_belief(parameter) for parameter in document["input_parameters"].values())
+    return bool(document.get("priors")) or any(own) or any(map(has_own_belief, document["objectives"]))
+
+
+def has_own_belief(objective: Mapping[str, Any]) -> bool:
+    """Tell whether an objective has priors of its own that say anything."""
+    return any(has_belief({"prior": prior}) for prior in (objective.get("priors") or {}).values())
 
 
 def has_belief(parameter: Mapping[str, Any]) -> bool:

@@ -55,6 +55,15 @@ class ParameterSpec:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ObjectivePriors:
+    """The beliefs about where one objective alone is best."""
+
+    objective: str
+    priors: Mapping[str, ComponentSpec]
+    """By parameter; only those that say anything."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DesignSpec:
     """Section ``design_of_experiment``: what is evaluated before there is a model."""
 
@@ -161,6 +170,9 @@ class Scenario:
     """None if there is no column for it; a result may still say that its configuration is not feasible."""
 
     joint_priors: tuple[ComponentSpec, ...] = ()
+    objective_priors: tuple[ObjectivePriors, ...] = ()
+    """Of the objectives that have any."""
+
     constraints: tuple[str, ...] = ()
     """Conditions over the parameters that every configuration meets, as the user wrote them."""
 
@@ -184,7 +196,16 @@ class Scenario:
     @property
     def has_priors(self) -> bool:
         """Whether the user says anything about where the optimum lies."""
-        return bool(self.joint_priors) or any(p.has_belief for p in self.parameters)
+        return bool(self.joint_priors or self.objective_priors) or any(p.has_belief for p in self.parameters)
+
+    @property
+    def prior_columns(self) -> tuple[str, ...]:
+        """The columns of the history that say more of the priors than their weight."""
+        weighting = self.acquisition.prior_weighting
+        if self.optimizer.type != "bayesian" or weighting is None or not self.has_priors:
+            return ()
+        is_shown = {"prior_trust": bool(weighting.options["safeguard"]), "prior_of": bool(self.objective_priors)}
+        return tuple(column for column, shown in is_shown.items() if shown)
 
     def origin_of(self, path: str) -> str:
         """Return the name of the file, or the ``--set``, that wrote the value at a path; empty if there is none."""

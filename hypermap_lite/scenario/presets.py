@@ -30,7 +30,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "screening": 0,
             "scalarization": {"type": "linear"},
             "weights": {"type": "dirichlet", "alpha": 1.0},
-            "prior_weighting": {"method": "pibo", "floor": 1e-6},
+            "prior_weighting": {"method": "pibo", "floor": 1e-6, "prior_free": 0.0, "safeguard": False},
         },
     }
 

@@ -158,12 +158,20 @@ def _prior_use(scenario: Scenario) -> str:
         return "no priors: nothing to weight the acquisition with"
     if weighting is None:
         return "priors: not in the acquisition (prior_weighting is none)"
-    options = dict(weighting.options)
+    options = {key: value for key, value in weighting.options.items() if key not in ("prior_free", "safeguard")}
+    care = _care(weighting.options)
     if weighting.type == "bopro":
-        return f"priors: bopro{_options(options)} takes the place of {scenario.acquisition.function.type}"
+        return f"priors: bopro{_options(options)} takes the place of {scenario.acquisition.function.type}{care}"
     if options.get("beta") is None:
         options["beta"] = 0.1 * max(scenario.budget.evaluations - scenario.design.number_of_samples, 1)
-    return f"priors: acquisition weighted by {weighting.type}{_options(options)}"
+    return f"priors: acquisition weighted by {weighting.type}{_options(options)}{care}"
+
+
+def _care(options: Mapping[str, Any]) -> str:
+    """Say what is done against misleading priors."""
+    free, is_checked = options["prior_free"], options["safeguard"]
+    parts = [f"but for {100 * free:g} % of the steps"] * bool(free) + ["dropped if they mislead"] * is_checked
+    return "".join(f", {part}" for part in parts)
 
 
 def _budget(scenario: Scenario) -> str:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypermap_lite.errors import RunFolderError
 from hypermap_lite.evaluation.outcome import Evaluation, Outcome, Replicate, State, Suggestion
 from hypermap_lite.history.csv_format import format_record
-from hypermap_lite.history.rows import EvaluationsFormat, HistoryFormat, read_history
+from hypermap_lite.history.rows import PRIOR_COLUMNS, EvaluationsFormat, HistoryFormat, read_history
 from hypermap_lite.objectives import FeasibleOutput
 from tests.history.examples import OBJECTIVES, SPACE, evaluation, replicate
 
@@ -81,6 +81,33 @@ def fields_of(record: str) -> list[str]:
 @given(evaluations, st.sampled_from([HISTORY, HistoryFormat(SPACE, OBJECTIVES, FLAG)]))
 def test_evaluations_round_trip_exactly(row, form):
     assert form.parse(fields_of(form.format(row))) == row
+
+
+@given(evaluations, st.sampled_from([1.0, 0.5, 0.0, None]), st.sampled_from(["reward", ""]))
+def test_what_is_said_of_priors_round_trips_exactly(row, trust, name):
+    row = replace(row, suggestion=replace(row.suggestion, prior_trust=trust, prior_of=name))
+    form = HistoryFormat(SPACE, OBJECTIVES, None, PRIOR_COLUMNS)
+    assert form.parse(fields_of(form.format(row))) == row
+
+
+def test_columns_of_priors_follow_the_weight_and_are_there_if_asked_for():
+    columns = HistoryFormat(SPACE, OBJECTIVES, None, ("prior_of", "prior_trust")).columns
+    assert columns[columns.index("prior_weight") :][:4] == (
+        *("prior_weight", "prior_trust", "prior_of", "acquisition_value"),
+    )
+    assert "prior_of" not in HistoryFormat(SPACE, OBJECTIVES, None, ("prior_trust",)).columns
+
+
+@pytest.mark.parametrize("shown", [(), ("prior_trust",), ("prior_of",), ("prior_trust", "prior_of")])
+def test_a_history_is_read_with_the_columns_of_priors_that_it_has(tmp_path, shown):
+    form = HistoryFormat(SPACE, OBJECTIVES, None, shown)
+    row = evaluation(0)
+    row = replace(row, suggestion=replace(row.suggestion, prior_weight=0.5, prior_trust=0.25, prior_of="cost"))
+    (tmp_path / "history.csv").write_text(format_record(form.columns) + form.format(row))
+    (found,) = read_history(tmp_path, SPACE, OBJECTIVES)
+    assert found.suggestion.prior_weight == 0.5
+    assert found.suggestion.prior_trust == (0.25 if "prior_trust" in shown else None)
+    assert found.suggestion.prior_of == ("cost" if "prior_of" in shown else "")
 
 
 @given(calls, st.sampled_from([None, FLAG]))

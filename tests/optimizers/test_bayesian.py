@@ -23,6 +23,10 @@ GAUSSIANS = {
 }
 
 
+ALWAYS_GUIDED = {"prior_free": 0, "safeguard": False}
+"""Prior weighting that is the same in every step."""
+
+
 @pytest.mark.parametrize(
     "changes",
     [
@@ -154,27 +158,27 @@ def test_rescaling_a_parameter_changes_no_suggestion(n_objectives: int) -> None:
 
 
 def test_the_prior_decays_with_the_number_of_model_based_suggestions() -> None:
-    acquisition = {"prior_weighting": {"method": "pibo", "beta": 6.0}}
+    acquisition = {"prior_weighting": {"method": "pibo", "beta": 6.0, **ALWAYS_GUIDED}}
     optimizer = run(scenario_of(input_parameters=GAUSSIANS, acquisition=acquisition), 9, batch=2)
     weights = [e.suggestion.prior_weight for e in optimizer.history]
-    assert weights == [None] * 5 + [6.0, 3.0, 2.0, 1.5]
+    assert weights == [1.0, 1.0, 1.0, 1.0, 0.0, 6.0, 3.0, 2.0, 1.5]
 
 
 @pytest.mark.parametrize("changes", [{}, {"objectives": [{"name": "near"}]}, {"surrogate": "random_forest"}], ids=str)
 def test_bopro_runs_with_categories_batches_and_failures_and_counts_its_suggestions(changes: dict) -> None:
-    acquisition = {"prior_weighting": {"method": "bopro", "model_weight": 6.0}}
+    acquisition = {"prior_weighting": {"method": "bopro", "model_weight": 6.0, **ALWAYS_GUIDED}}
     scenario = scenario_of(input_parameters=MIXED, acquisition=acquisition, **changes)
     whole = build_optimizer(load_scenario(scenario))
     while len(whole.history) < 10:
         suggestions = whole.ask(2)
         whole.tell([fail(s) if s.trial == 3 else evaluate(s, mixed_objectives) for s in suggestions])
-    assert [e.suggestion.prior_weight for e in whole.history] == [None] * 5 + [6.0, 3.0, 2.0, 1.5, 1.2]
+    assert [e.suggestion.prior_weight for e in whole.history][5:] == [6.0, 3.0, 2.0, 1.5, 1.2]
     again = resumed(scenario, list(whole.history)[:8])
     assert [s.configuration for s in again.ask(2)] == configurations(whole)[8:]
 
 
 def test_bopro_goes_where_the_prior_points_until_the_model_knows_better() -> None:
-    acquisition = {"prior_weighting": {"method": "bopro", "model_weight": 4.0}}
+    acquisition = {"prior_weighting": {"method": "bopro", "model_weight": 4.0, **ALWAYS_GUIDED}}
     wrong = {"a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.9, "std": 0.05}}}
     design = {"type": "prior_sampling", "uniform_share": 0, "number_of_samples": 5}
     scenario = scenario_of(
@@ -207,11 +211,11 @@ def test_without_prior_there_is_no_prior_weight() -> None:
 
 def test_prior_weighting_can_be_switched_off() -> None:
     off = scenario_of(input_parameters=GAUSSIANS, acquisition={"prior_weighting": {"method": "none"}})
-    assert all(e.suggestion.prior_weight is None for e in run(off, 7).history)
+    assert all(e.suggestion.prior_weight is None for e in list(run(off, 7).history)[5:])
 
 
 def test_a_strong_prior_pulls_the_suggestions() -> None:
-    strong = {"prior_weighting": {"method": "pibo", "beta": 1000.0, "floor": 1e-6}}
+    strong = {"prior_weighting": {"method": "pibo", "beta": 1000.0, "floor": 1e-6, **ALWAYS_GUIDED}}
     narrow = {
         **GAUSSIANS,
         "a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.9, "std": 0.02}},

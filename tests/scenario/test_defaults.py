@@ -38,7 +38,8 @@ def test_options_of_the_chosen_type_are_filled_and_of_no_other() -> None:
 
 
 def test_items_of_lists_are_filled() -> None:
-    assert filled()["objectives"][0] == {"name": "cost", "goal": "minimize", "reference_point": None, "description": ""}
+    rest = {"goal": "minimize", "reference_point": None, "priors": None, "description": ""}
+    assert filled()["objectives"][0] == {"name": "cost"} | rest
 
 
 def test_the_design_has_two_points_per_parameter_and_at_least_six() -> None:

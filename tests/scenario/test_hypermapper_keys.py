@@ -24,6 +24,7 @@ FEASIBLE = {"feasible_output.enable_feasible_predictor": True}
 BOX = {**TWO, "weight_sampling": "bounding_box"}
 CMA = {"acquisition_function_optimizer": "cma_es"}
 WEIGHTING = "acquisition.prior_weighting"
+ALWAYS_GUIDED = {"prior_free": 0.0, "safeguard": False}
 PRIOR_OF_X = "input_parameters.x.prior"
 
 
@@ -223,8 +224,8 @@ CASES = [
     Case(
         "prior_method",
         "bopro",
-        {WEIGHTING: {"method": "bopro", "model_weight": 10, "good_quantile": 0.05, "floor": 1e-8}},
-        {WEIGHTING: {"method": "pibo", "beta": 5.0, "floor": 1e-6, "unbounded": True}},
+        {WEIGHTING: {"method": "bopro", "model_weight": 10, "good_quantile": 0.05, "floor": 1e-8, **ALWAYS_GUIDED}},
+        {WEIGHTING: {"method": "pibo", "beta": 5.0, "floor": 1e-6, "unbounded": True, **ALWAYS_GUIDED}},
         BELIEF,
     ),
     Case("prior_beta", 3, {f"{WEIGHTING}.beta": 3.0}, {f"{WEIGHTING}.beta": 5.0}, BELIEF),

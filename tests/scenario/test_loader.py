@@ -235,3 +235,35 @@ def test_who_gives_a_scalarization_gets_it(given: dict) -> None:
     assert load_scenario(GOOD | {"acquisition": given}).acquisition.function.type == "noisy_expected_improvement"
     spelt_out = {**given, "type": "noisy_expected_hypervolume_improvement"}
     assert load_scenario(GOOD | {"acquisition": spelt_out}).acquisition.function.type == spelt_out["type"]
+
+
+PRIOR = {"type": "gaussian", "mean": 1, "std": 2}
+
+
+@pytest.mark.parametrize(
+    ("sections", "columns"),
+    [
+        pytest.param({}, (), id="no priors"),
+        pytest.param({"own": True}, ("prior_trust", "prior_of"), id="of an objective"),
+        pytest.param({"common": True}, ("prior_trust",), id="common"),
+        pytest.param({"own": True, "acquisition": {"prior_weighting": {"safeguard": False}}}, ("prior_of",), id="safe"),
+        pytest.param({"common": True, "preset": "paper"}, (), id="paper"),
+        pytest.param({"common": True, "acquisition": {"prior_weighting": "none"}}, (), id="none"),
+        pytest.param({"common": True, "optimizer": "random_search"}, (), id="no model"),
+    ],
+)
+def test_the_history_has_the_columns_that_say_something_of_priors(sections: dict, columns: tuple[str, ...]) -> None:
+    document = copy.deepcopy(GOOD) | {k: v for k, v in sections.items() if k not in ("own", "common")}
+    if "own" in sections:
+        document["objectives"][0]["priors"] = {"x": PRIOR}
+    if "common" in sections:
+        document["input_parameters"]["x"]["prior"] = PRIOR
+    assert load_scenario(document).prior_columns == columns
+
+
+def test_priors_of_an_objective_that_say_nothing_are_none() -> None:
+    document = copy.deepcopy(GOOD)
+    document["objectives"][0]["priors"] = {"x": "uniform"}
+    scenario = load_scenario(document)
+    assert scenario.objective_priors == ()
+    assert not scenario.has_priors

@@ -39,6 +39,9 @@ def translate_weighting(draft: Draft) -> None:
     else:
         problem = f"there is no method {show(reading['prior_method'])}"
         raise ScenarioError("$.prior_method", problem, allowed="pibo, bopro")
+    if draft.document["acquisition"]["prior_weighting"]["method"] != "none":
+        draft.set(f"{path}.prior_free", 0.0, "prior_method")
+        draft.set(f"{path}.safeguard", False, "prior_method")
 
 
 def _beta(draft: Draft) -> float:
