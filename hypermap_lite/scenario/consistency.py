@@ -26,6 +26,7 @@ def check_consistency(document: Mapping[str, Any]) -> None:
     _check_permutations(document["input_parameters"])
     _check_feasible_output(document)
     _check_joint_priors(document["input_parameters"], document["priors"])
+    _check_objective_priors(document["input_parameters"], document["objectives"])
     _check_limits(document)
     _check_budget(document)
     _check_client(document["evaluator"])
@@ -53,10 +54,14 @@ def _check_names(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str
 
 def _check_permutations(parameters: Mapping[str, Any]) -> None:
     for name, parameter in parameters.items():
-        if parameter["parameter_type"] == "permutation" and has_belief(parameter):
-            problem = f"'{name}' is a permutation, which has no {parameter['prior']['type']} prior"
-            hint = "A kde among the joint priors can speak of it."
-            raise ScenarioError(f"$.input_parameters.{name}.prior", problem, allowed="uniform", hint=hint)
+        _check_permutation(f"$.input_parameters.{name}.prior", name, parameter, parameter["prior"])
+
+
+def _check_permutation(path: str, name: str, parameter: Mapping[str, Any], prior: Mapping[str, Any] | None) -> None:
+    if parameter["parameter_type"] == "permutation" and prior is not None and has_belief({"prior": prior}):
+        problem = f"'{name}' is a permutation, which has no {prior['type']} prior"
+        hint = "A kde among the joint priors can speak of it."
+        raise ScenarioError(path, problem, allowed="uniform", hint=hint)
 
 
 def _check_feasible_output(document: Mapping[str, Any]) -> None:
@@ -88,6 +93,14 @@ def _check_joint_priors(parameters: Mapping[str, Any], priors: Sequence[Mapping[
             if owners.setdefault(name, f"$.priors[{i}]") != f"$.priors[{i}]":
                 problem = f"'{name}' already has a prior at {owners[name]}"
                 raise ScenarioError(path, problem, allowed="one prior per parameter", hint="Drop one of the two.")
+
+
+def _check_objective_priors(parameters: Mapping[str, Any], objectives: Sequence[Mapping[str, Any]]) -> None:
+    for i, objective in enumerate(objectives):
+        for name, prior in (objective["priors"] or {}).items():
+            path = f"$.objectives[{i}].priors.{name}"
+            _check_known(path, name, parameters, "parameter")
+            _check_permutation(path, name, parameters[name], prior)
 
 
 def _check_density(path: str, prior: Mapping[str, Any]) -> None:

@@ -104,8 +104,9 @@ def _priors_outside(scenario: Scenario) -> Iterator[tuple[str, str]]:
 
 def _gaussians(scenario: Scenario) -> Iterator[tuple[str, list[Part]]]:
     """Yield the path and the weighted Gaussians of each prior that is made of them."""
-    for parameter in scenario.parameters:
-        name, prior = parameter.name, parameter.prior
+    common = [(parameter.name, parameter.prior) for parameter in scenario.parameters]
+    own = [item for entry in scenario.objective_priors for item in entry.priors.items()]
+    for name, prior in [*common, *own]:
         if prior and prior.type == "gaussian":
             yield prior.path, [({name: prior.options["mean"]}, {name: prior.options["std"]}, 1.0)]
         if prior and prior.type == "mixture":

@@ -31,5 +31,21 @@ def replace_priors(document: Mapping[str, Any], file: str) -> tuple[dict[str, An
     joint = document.get("priors")
     if joint and isinstance(joint, list):
         dropped.append(f"the joint prior{'s' * (len(joint) != 1)}")
+    if isinstance(document.get("objectives"), list) and _without_own(document)["objectives"] != document["objectives"]:
+        dropped.append("the priors of the objectives")
     notes = [f"{name} takes the place of {' and '.join(dropped)}"] if dropped else []
-    return merge(root_schema(), document, {**added, **removed}), Layer(name, added, Path.cwd()), notes
+    merged = merge(root_schema(), document, {**added, **removed})
+    return {**merged, **_without_own(document)}, Layer(name, added, Path.cwd()), notes
+
+
+def _without_own(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the objectives without priors of their own, if there are any objectives."""
+    objectives = document.get("objectives")
+    if not isinstance(objectives, list):
+        return {}
+    return {
+        "objectives": [
+            {key: value for key, value in entry.items() if key != "priors"} if isinstance(entry, Mapping) else entry
+            for entry in objectives
+        ]
+    }

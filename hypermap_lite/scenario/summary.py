@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from hypermap_lite.objectives import MAX_CLOSED_FORM
-from hypermap_lite.scenario.model import ComponentSpec, OutputSpec, ParameterSpec, Scenario
+from hypermap_lite.scenario.model import ComponentSpec, ObjectivePriors, OutputSpec, ParameterSpec, Scenario
 from hypermap_lite.typing import as_argument
 
 INDENT = " " * 12
@@ -23,7 +23,10 @@ def summarize(scenario: Scenario) -> str:
         "experiment": _experiment(scenario),
         "parameters": _parameters(scenario.parameters),
         "constraints": [*scenario.constraints],
-        "priors": [line for prior in scenario.joint_priors for line in _joint_prior(prior)],
+        "priors": [
+            *(line for prior in scenario.joint_priors for line in _joint_prior(prior)),
+            *map(_objective_priors, scenario.objective_priors),
+        ],
         "objectives": _objectives(scenario),
         "feasibility": _feasible_output(scenario),
         "earlier": _earlier(scenario),
@@ -74,6 +77,10 @@ def _prior(prior: ComponentSpec | None) -> str:
         return _component(prior)
     parts = [f"{c['mean']:g} ± {c['std']:g}{_share(c['weight'])}" for c in prior.options["components"]]
     return f"mixture({' + '.join(parts)})"
+
+
+def _objective_priors(entry: ObjectivePriors) -> str:
+    return f"of {entry.objective}: " + ", ".join(f"{name} {_prior(prior)}" for name, prior in entry.priors.items())
 
 
 def _joint_prior(prior: ComponentSpec) -> list[str]:

@@ -207,6 +207,23 @@ BAD: dict[str, Bad] = {
         joint({"x": 0, "m": 1}, {"x": 1, "m": 1}),
         ("$.priors[0].components[0].mean.m", "no parameter 'm'", "x, n, size, mode"),
     ),
+    "objective_prior_for_unknown_parameter": Bad(
+        changed("objectives.0.priors", {"modes": {"type": "weights", "weights": [1, 2]}}),
+        ("$.objectives[0].priors.modes", "no parameter 'modes'", "x, n, size, mode", "'mode'"),
+    ),
+    "objective_prior_without_a_std": Bad(
+        changed("objectives.1.priors", {"x": {"type": "gaussian", "mean": 0}}),
+        ("$.objectives[1].priors.x", "'std' is missing", "> 0"),
+    ),
+    "objective_prior_that_does_not_fit": Bad(
+        changed("objectives.1.priors", {"size": {"type": "weights", "weights": [1, 2]}}),
+        ("$.objectives[1].priors.size.weights", "2 weights for the 3 levels", "3 numbers"),
+        False,
+    ),
+    "prior_free_above_one": Bad(
+        changed("acquisition", {"prior_weighting": {"prior_free": 2}}),
+        ("$.acquisition.prior_weighting.prior_free", "2 is too large", "<= 1"),
+    ),
     "joint_prior_of_a_categorical": Bad(
         joint({"mode": 0}, {"mode": 1}),
         ("$.priors[0].components[0].mean.mode", "'mode' is categorical", "real and integer"),

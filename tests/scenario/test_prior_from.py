@@ -46,6 +46,15 @@ def test_priors_of_the_scenario_are_dropped_with_a_note() -> None:
     assert scenario.notes == ("--prior-from run takes the place of the priors of x, mode and the joint prior",)
 
 
+def test_priors_of_the_objectives_are_dropped_with_a_note() -> None:
+    objectives = copy.deepcopy(GOOD["objectives"])
+    objectives[1]["priors"] = {"x": {"type": "gaussian", "mean": 0, "std": 1}}
+    scenario = loaded(objectives=objectives)
+    assert scenario.objective_priors == ()
+    assert scenario.objectives[1].name == "gain"
+    assert scenario.notes == ("--prior-from run takes the place of the priors of the objectives",)
+
+
 def test_overrides_come_on_top() -> None:
     scenario = loaded("design_of_experiment.type=sobol", "priors.0.rows=all", "input_parameters.n.prior.type=beta",
                       "input_parameters.n.prior.shape=decay")  # fmt: skip

@@ -44,7 +44,9 @@ def test_the_hypervolume_of_many_objectives_is_looked_for_in_random_directions()
 def test_the_beta_of_pibo_is_worked_out() -> None:
     priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
     text = page(priors=priors, budget={"evaluations": 28}, objectives=[{"name": "cost"}])
-    assert "acquisition weighted by pibo(beta=2, floor=0.05)" in text
+    weighted = "acquisition weighted by pibo(beta=2, floor=0.05), but for 25 % of the steps, dropped if they mislead"
+    assert weighted in text
+    assert "evaluations 1 to 8: prior_sampling(uniform_share=0.25)" in text
     assert "priors      mixture of\n              x 1 ± 2\n" in text
     assert "one objective" in text
 
@@ -125,6 +127,17 @@ def test_bopro_takes_the_place_of_the_acquisition_function() -> None:
     priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
     text = page(priors=priors, acquisition={"prior_weighting": "bopro"})
     assert "bopro(model_weight=10, good_quantile=0.05, floor=0.01) takes the place of noisy_expected_hyp" in text
+
+
+def test_care_that_is_not_taken_is_not_mentioned() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+    text = page(priors=priors, acquisition={"prior_weighting": {"prior_free": 0, "safeguard": False}})
+    assert "floor=0.05)\n" in text
+
+
+def test_the_priors_of_an_objective_are_shown() -> None:
+    objectives = [{"name": "cost", "priors": {"x": {"type": "gaussian", "mean": 1, "std": 2}}}]
+    assert "priors      of cost: x gaussian(mean=1, std=2)\n" in page(objectives=objectives)
 
 
 def test_a_grid_of_given_levels_is_as_large_as_it_is() -> None:
