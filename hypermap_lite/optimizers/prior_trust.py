@@ -221,7 +221,8 @@ class Gauge:
     def __call__(self, Y: FloatArray) -> FloatArray:
         """Return the reach of n points along each direction, to the power m, shape (n, k)."""
         depth = np.maximum((self.corner - Y) / self.scale, 0.0)
-        return (depth[:, None, :] / self.directions).min(axis=2) ** Y.shape[1]
+        along = [column[:, None] / self.directions[:, j] for j, column in enumerate(depth.T)]
+        return np.asarray(np.minimum.reduce(along) ** Y.shape[1])
 
     def reach(self, Y: FloatArray) -> FloatArray:
         """Return the farthest reach of n points along each direction, shape (k,); zero without points."""
