@@ -195,8 +195,14 @@ def test_a_range_as_prior_without_floor_keeps_all_trials_in_it(tmp_path):
         "x": {"parameter_type": "real", "values": [-2, 2], "prior": {"type": "uniform", "low": 0.5, "high": 1}},
         "n": {"parameter_type": "integer", "values": [0, 9], "prior": {"type": "uniform", "low": 3, "high": 5}},
     }
-    acquisition = {"prior_weighting": {"method": "pibo", "floor": 0}}
-    scenario = SCENARIO | {"input_parameters": parameters, "optimizer": "bayesian", "acquisition": acquisition}
+    acquisition = {"prior_weighting": {"method": "pibo", "floor": 0, "prior_free": 0, "safeguard": False}}
+    design = SCENARIO.get("design_of_experiment", {}) | {"type": "prior_sampling", "uniform_share": 0}
+    scenario = SCENARIO | {
+        "input_parameters": parameters,
+        "optimizer": "bayesian",
+        "acquisition": acquisition,
+        "design_of_experiment": design,
+    }
     result = optimize(scenario, two, output_directory=tmp_path)
     assert all(0.5 <= e.configuration["x"] <= 1 and 3 <= e.configuration["n"] <= 5 for e in result.evaluations)
 

@@ -224,6 +224,7 @@ def test_prior_decays_as_if_all_had_been_one_run(tmp_path, n_earlier):
         "objectives": [{"name": "f"}],
         "design_of_experiment": {"number_of_samples": 4},
         "budget": {"evaluations": 30},
+        "acquisition": {"prior_weighting": {"prior_free": 0, "safeguard": False}},
     }
     lines = [f"{0.05 + i / 20},{i}" for i in range(n_earlier)]
     file = write(tmp_path / "samples.csv", "x,f", *lines)
