@@ -105,6 +105,17 @@ def test_a_resumed_run_trusts_as_the_uninterrupted_one(a: float, stop: int) -> N
     assert replace(again, seconds=0) == replace(expected, seconds=0)
 
 
+@pytest.mark.parametrize("n_done", [8, 11, 14])
+def test_a_batch_shares_the_trust_in_what_was_completed_before_it(n_done: int) -> None:
+    whole = run(believing(0.95), 8, function=valley)
+    while len(whole.history) < 17:
+        whole.tell([evaluate(s, valley) for s in whole.ask(3)])
+    batch = resumed(believing(0.95), list(whole.history)[:n_done]).ask(3)
+    assert len({s.prior_trust for s in batch}) == 1
+    expected = [row.suggestion for row in list(whole.history)[n_done : n_done + 3]]
+    assert [replace(s, seconds=0) for s in batch] == [replace(s, seconds=0) for s in expected]
+
+
 def test_a_history_that_was_read_without_trust_leads_to_the_same() -> None:
     whole = run(believing(0.95), 14, function=valley)
     bare = [
