@@ -49,6 +49,7 @@ def test_options_of_other_kinds_are_not_added() -> None:
     assert "uniform_share" not in recorded["design_of_experiment"]
 
 
-def test_sections_that_are_missing_or_no_objects_are_left_alone() -> None:
-    document = {"versions": VERSIONS, "acquisition": "expected_improvement"}
-    assert with_old_defaults(document) == document
+def test_a_section_that_is_no_object_is_left_alone_and_a_missing_one_is_as_it_was() -> None:
+    document = with_old_defaults({"versions": VERSIONS, "acquisition": "expected_improvement"})
+    assert document["acquisition"] == "expected_improvement"
+    assert document["surrogate"]["restart"] is True
