@@ -11,7 +11,8 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.earlier import earlier_evaluations
 from hypermap_lite.evaluation.evaluator import outcome_of
 from hypermap_lite.evaluation.outcome import Evaluation, Outcome, State, Suggestion
-from hypermap_lite.history.history import History
+from hypermap_lite.history.history import History, objectives_of
+from hypermap_lite.history.pooling import pooled
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.scenario.loader import load_scenario
 
@@ -124,7 +125,10 @@ class Optimizer:
         return evaluation
 
     def pareto_front(self) -> list[Evaluation]:
-        """Return the non-dominated trials, in order; for one objective the best, with its ties."""
-        completed = self.history.completed
-        keep = non_dominated(self.history.Y())
+        """Return the non-dominated trials, in order; for one objective the best, with its ties.
+
+        A configuration that was confirmed counts, and stands here, with the mean over all its replicates.
+        """
+        completed = [e for e in pooled(self.history) if e.is_completed]
+        keep = non_dominated(objectives_of(completed, self.history.objectives))
         return [evaluation for evaluation, is_optimal in zip(completed, keep, strict=True) if is_optimal]

@@ -50,12 +50,12 @@ def add_parser(subparsers: Subparsers) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print the front and its hypervolume, and write ``pareto.csv`` where the folder can be written."""
     from hypermap_lite.history.files import write_atomically
-    from hypermap_lite.plotting.runs import load_runs
+    from hypermap_lite.plotting.settled import load_settled
 
     sources, _ = as_sources([Path(args.run)], None, meaning_of(args))
     if len(sources) != 1:
         raise UsageError(f"{args.run}: holds {len(sources)} CSV files; name one of them")
-    (run,) = load_runs(sources)
+    (run,) = load_settled(sources)
     summary = describe_front(run, parse_reference_point(args.reference_point))
     text = front_as_csv(run)
     if args.csv or not sys.stdout.isatty():

@@ -181,9 +181,9 @@ def _only_a_note(what: str) -> Iterator[None]:
 
 def _print_front(result: Result) -> None:
     from hypermap_lite.cli.pareto import describe_front, front_as_table
-    from hypermap_lite.plotting.runs import load_runs
+    from hypermap_lite.plotting.settled import load_settled
 
-    (run,) = load_runs([result.run_folder])
+    (run,) = load_settled([result.run_folder])
     print(front_as_table(run))
     print(f"\n{describe_front(run)}")
 

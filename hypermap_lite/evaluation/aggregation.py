@@ -6,10 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from hypermap_lite.evaluation.outcome import Evaluation, Replicate, State, Suggestion
-
-WORST_FIRST: Final = (State.FAILED, State.TIMEOUT, State.INFEASIBLE)
-"""States other than completed; the first one met among a configuration's replicates is its own."""
+from hypermap_lite.evaluation.outcome import WORST_FIRST, Evaluation, Replicate, State, Suggestion
 
 _PHRASES: Final = {
     State.FAILED: "failed",

@@ -7,7 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from hypermap_lite.evaluation.outcome import Evaluation, Replicate
+from hypermap_lite.evaluation.outcome import CONFIRM, Evaluation, Replicate
+from hypermap_lite.history.pooling import pooled
 from hypermap_lite.objectives import Objective, values_of
 from hypermap_lite.pareto.dominance import non_dominated
 
@@ -37,6 +38,7 @@ class FrontTracker:
     def __init__(self, objectives: Sequence[Objective]) -> None:
         self.objectives = tuple(objectives)
         self._front = np.empty((0, len(self.objectives)))
+        self._rows: list[Evaluation] = []
 
     @property
     def size(self) -> int:
@@ -44,7 +46,10 @@ class FrontTracker:
         return len(self._front)
 
     def add(self, evaluation: Evaluation) -> str:
-        """Take an evaluation in; return ``front +1``, ``front +1 -2``, ``best`` or nothing."""
+        """Take an evaluation in; return ``front +1``, ``front +1 -2``, ``best``, ``front of 5`` or nothing."""
+        self._rows.append(evaluation)
+        if evaluation.suggestion.phase == CONFIRM:
+            return self._look_again()
         if not evaluation.is_completed:
             return ""
         points = np.vstack([self._front, values_of(self.objectives, evaluation.values)])
@@ -56,6 +61,13 @@ class FrontTracker:
         if len(self.objectives) == 1:
             return "best" if dropped or self.size == 1 else ""
         return f"front +1 -{dropped}" if dropped else "front +1"
+
+    def _look_again(self) -> str:
+        """Work the front out anew, after a configuration was evaluated once more."""
+        completed = [e for e in pooled(self._rows) if e.is_completed]
+        Y = np.array([values_of(self.objectives, e.values) for e in completed])
+        self._front = Y[non_dominated(Y)] if completed else self._front[:0]
+        return f"front of {self.size}" if len(self.objectives) > 1 else ""
 
 
 def describe(evaluation: Evaluation, front: str) -> str:

@@ -12,6 +12,9 @@ from hypermap_lite.typing import Configuration
 EARLIER: Final = "earlier"
 """Phase of an evaluation that was made before the run, by somebody else."""
 
+CONFIRM: Final = "confirm"
+"""Phase of an evaluation that repeats a configuration to know its objectives better."""
+
 
 class State(Enum):
     """How an evaluation ended."""
@@ -32,6 +35,10 @@ class State(Enum):
     def is_feasible(self) -> bool | None:
         """Whether the configuration is allowed; None where that was not found out."""
         return {State.COMPLETED: True, State.INFEASIBLE: False}.get(self)
+
+
+WORST_FIRST: Final = (State.FAILED, State.TIMEOUT, State.INFEASIBLE)
+"""States other than completed; the first one met among the replicates of a configuration is its own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +78,8 @@ class Suggestion:
 
     configuration: Configuration
     phase: str
-    """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``prior``, or a search."""
+    """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``prior``, ``confirm``, or a
+    search."""
 
     prior_weight: float | None = None
     """Exponent the user prior had in the choice, 0 in a prior-free step; None where there is nothing to weigh."""

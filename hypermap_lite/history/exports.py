@@ -16,10 +16,11 @@ from pathlib import Path
 from typing import Final
 
 from hypermap_lite.errors import RunFolderError
-from hypermap_lite.evaluation.outcome import Evaluation, State
+from hypermap_lite.evaluation.outcome import CONFIRM, Evaluation, State
 from hypermap_lite.history.backups import keep_copies
 from hypermap_lite.history.csv_format import complete_length, format_record
 from hypermap_lite.history.files import append_durably, encode, explained, make_folder, truncate, write_atomically
+from hypermap_lite.history.pooling import pooled
 from hypermap_lite.history.rows import HistoryFormat
 
 logger = logging.getLogger(__name__)
@@ -71,7 +72,7 @@ class Exports:
             self._complete(self._samples_file)
         if self._pareto_file is not None:
             make_folder(self._pareto_file.parent)
-            self._make_way(self._pareto_file)
+            self._make_way(self._pareto_file, self._pooled_rows(evaluations))
 
     def append(self, evaluation: Evaluation) -> None:
         """Add one evaluation to the samples file; it is on the disk when this returns.
@@ -124,10 +125,16 @@ class Exports:
             write_atomically(path, self._text)
         self._length = len(expected)
 
-    def _make_way(self, path: Path) -> None:
+    def _pooled_rows(self, evaluations: Sequence[Evaluation]) -> Iterator[str]:
+        """Yield what stood on the front for a confirmed configuration at any time."""
+        for i, evaluation in enumerate(evaluations):
+            if evaluation.suggestion.phase == CONFIRM:
+                yield from self._rows(pooled(evaluations[: i + 1]))
+
+    def _make_way(self, path: Path, pooled_rows: Iterable[str]) -> None:
         """Set the pareto file aside unless each of its lines is one of this run."""
         content = _content(path)
-        if not set(content.splitlines()) <= set(encode(self._text).splitlines()):
+        if not set(content.splitlines()) <= set(encode(self._text + "".join(pooled_rows)).splitlines()):
             _set_aside(path, content)
             write_atomically(path, self._header)
 

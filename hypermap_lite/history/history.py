@@ -70,8 +70,7 @@ class History:
 
         Values beyond 1e150 in size are cut there: models square them.
         """
-        rows = [values_of(self.objectives, e.values) for e in self.completed]
-        return np.clip(np.array(rows).reshape(len(rows), len(self.objectives)), -LARGEST, LARGEST)
+        return objectives_of(self.completed, self.objectives)
 
     def feasibility(self) -> tuple[FloatArray, BoolArray]:
         """Return the codes of the completed and infeasible evaluations, shape (n, d), and which are feasible, (n,)."""
@@ -82,3 +81,9 @@ class History:
     def X_all(self) -> FloatArray:  # noqa: N802 - the field's name
         """Return the codes of all evaluations, whatever their state, shape (len(self), d)."""
         return self.space.encode([e.configuration for e in self._evaluations])
+
+
+def objectives_of(evaluations: Sequence[Evaluation], objectives: Sequence[Objective]) -> FloatArray:
+    """Return the objectives of completed evaluations, to be minimized and cut at 1e150 in size, shape (n, m)."""
+    rows = [values_of(objectives, e.values) for e in evaluations]
+    return np.clip(np.array(rows).reshape(len(rows), len(objectives)), -LARGEST, LARGEST)

@@ -19,6 +19,7 @@ from hypermap_lite.history.csv_format import complete_length, format_record, par
 from hypermap_lite.history.exports import Exports
 from hypermap_lite.history.files import append_durably, explained, truncate, write_atomically
 from hypermap_lite.history.lock import FolderLock
+from hypermap_lite.history.pooling import pooled
 from hypermap_lite.history.rows import EvaluationsFormat, HistoryFormat, check_header, read_history
 from hypermap_lite.history.run_log import run_log
 from hypermap_lite.history.scenario_record import check_scenario, write_scenario
@@ -99,7 +100,7 @@ class RunFolder:
 
     @property
     def pareto_path(self) -> Path:
-        """``pareto.csv``: the non-dominated rows of ``history.csv``."""
+        """``pareto.csv``: the non-dominated rows of ``history.csv``, those of a confirmed configuration as one."""
         return self.path / "pareto.csv"
 
     @property
@@ -250,8 +251,8 @@ class RunFolder:
         self._exports.write_front(front)
 
     def pareto_front(self) -> list[Evaluation]:
-        """Return the non-dominated completed evaluations, in the order of the trials."""
-        completed = [e for e in self.evaluations if e.is_completed]
+        """Return the non-dominated completed evaluations, confirmed ones pooled, in the order of the trials."""
+        completed = [e for e in pooled(self.evaluations) if e.is_completed]
         if not completed:
             return []
         is_optimal = non_dominated(np.array([values_of(self.objectives, e.values) for e in completed]))

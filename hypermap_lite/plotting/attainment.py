@@ -16,7 +16,8 @@ from hypermap_lite.pareto import attainment_surface
 from hypermap_lite.plotting import style
 from hypermap_lite.plotting.pareto import staircase
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
-from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, require_drawable
+from hypermap_lite.plotting.settled import load_settled
 from hypermap_lite.plotting.view import View, robust_view
 from hypermap_lite.typing import FloatArray
 
@@ -46,7 +47,7 @@ def plot_attainment(
     .. [1] Grunert da Fonseca, Fonseca, Hall. Inferential Performance Assessment of Stochastic Optimisers and the
        Attainment Function. Evolutionary Multi-Criterion Optimization, 2001.
     """
-    runs = load_runs(folders, labels)
+    runs = load_settled(folders, labels)
     n_objectives = len(runs[0].objectives)
     if n_objectives != 2:
         hint = "objectives" if n_objectives == 1 else "hypervolume"

@@ -10,10 +10,10 @@ import numpy as np
 
 from hypermap_lite.errors import UsageError
 from hypermap_lite.objectives import to_minimization
-from hypermap_lite.pareto import hypervolume_trace
 from hypermap_lite.plotting import style, traces
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
 from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.settled import volume_trace
 from hypermap_lite.typing import FloatArray
 
 logger = logging.getLogger(__name__)
@@ -31,7 +31,8 @@ def plot_hypervolume(
     """Draw hypervolume against evaluations; see `hypermap_lite.plotting.PlotFunction`.
 
     All runs are measured from one reference point. Runs that share a label become their mean with a band of one
-    standard error, up to the end of the shortest. Failed evaluations leave the hypervolume as it was.
+    standard error, up to the end of the shortest. Failed evaluations leave the hypervolume as it was; one that
+    confirms a configuration may lower it.
     """
     runs = load_runs(folders, labels)
     require_drawable(runs)
@@ -63,4 +64,4 @@ def plot_hypervolume(
 def run_traces(runs: Sequence[Run], reference: ReferencePoint) -> dict[str, list[FloatArray]]:
     """Return the hypervolume after each evaluation of each run, shape (n,), under the runs' labels."""
     corner = to_minimization(runs[0].objectives, reference.values)
-    return {label: [hypervolume_trace(run.Y, corner) for run in group] for label, group in by_label(runs).items()}
+    return {label: [volume_trace(run, corner) for run in group] for label, group in by_label(runs).items()}

@@ -16,6 +16,7 @@ from hypermap_lite.plotting import style, traces
 from hypermap_lite.plotting.files import numbers_of
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
 from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.settled import settled, trace
 from hypermap_lite.typing import FloatArray
 
 SHORTEST_EPOCH: Final = 1e8
@@ -89,7 +90,7 @@ def gap(run: Run, runs: Sequence[Run], reference: ReferencePoint) -> FloatArray:
         If nothing in any run is better than the reference point in every objective.
     """
     corner = to_minimization(run.objectives, reference.values)
-    points = np.vstack([other.Y for other in runs])
+    points = np.vstack([settled(other).Y for other in runs])
     ideal = np.nanmin(points, axis=0)
     span = corner - ideal
     if not (span > 0).all():
@@ -98,7 +99,7 @@ def gap(run: Run, runs: Sequence[Run], reference: ReferencePoint) -> FloatArray:
     whole = hypervolume((points - ideal) / span, np.ones(len(span)))
     if whole <= 0:
         raise UsageError(f"no evaluation beats the reference point in every objective ({reference})")
-    own = hypervolume_trace((run.Y - ideal) / span, np.ones(len(span)))
+    own = trace(run, lambda Y: hypervolume_trace((Y - ideal) / span, np.ones(len(span))))
     return np.clip(1 - own / whole, 0.0, 1.0)
 
 

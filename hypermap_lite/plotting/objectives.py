@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from hypermap_lite.objectives import Goal
 from hypermap_lite.plotting import style, traces
 from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.settled import trace
 from hypermap_lite.typing import FloatArray
 
 STATE_MARKS: Final[Mapping[str, str]] = {"failed": "x", "timeout": "1", "infeasible": "_"}
@@ -56,7 +57,7 @@ def plot_objectives(
 def running_best(run: Run) -> FloatArray:
     """Return the best value so far of each objective, shape (n, m), as the user directed it; NaN before the first."""
     signs = np.array([objective.sign for objective in run.objectives])
-    best: FloatArray = signs * np.fmin.accumulate(run.Y, axis=0)
+    best: FloatArray = signs * trace(run, lambda Y: np.fmin.accumulate(Y, axis=0))
     return best
 
 

@@ -29,7 +29,8 @@ from hypermap_lite.plotting.parameter_axes import (
     ticks,
     values_of,
 )
-from hypermap_lite.plotting.runs import Run, Source, by_label, legend_labels, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, legend_labels, require_drawable
+from hypermap_lite.plotting.settled import load_settled, trial_of
 from hypermap_lite.space import CategoricalParameter, Parameter
 from hypermap_lite.typing import FloatArray, Value
 
@@ -99,7 +100,7 @@ def plot_parameters(
 
     `parameters` are the names of those that have an axis, in this order; by default all have.
     """
-    runs = load_runs(folders, labels)
+    runs = load_settled(folders, labels)
     require_drawable(runs)
     axes_shown = _common_parameters(runs, parameters)
     target = style.output_path(output, runs, "parameters")
@@ -171,7 +172,7 @@ def _front_rows(runs: Sequence[Run], parameters: Sequence[Parameter]) -> FrontRo
     for label, group in by_label(runs).items():
         for run in group:
             chosen = np.flatnonzero(run.is_front)
-            heads += [(label, str(run.place), int(i) + 1) for i in chosen]
+            heads += [(label, str(run.place), trial_of(run, int(i)) + 1) for i in chosen]
             for column, parameter in zip(values, parameters, strict=True):
                 of_run = values_of(run, parameter)
                 column.extend(of_run[i] for i in chosen)

@@ -17,7 +17,8 @@ from matplotlib.lines import Line2D
 from hypermap_lite.errors import UsageError
 from hypermap_lite.plotting import style
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
-from hypermap_lite.plotting.runs import Run, Source, by_label, legend_labels, load_runs, require_drawable
+from hypermap_lite.plotting.runs import Run, Source, by_label, legend_labels, require_drawable
+from hypermap_lite.plotting.settled import load_settled, trial_of
 from hypermap_lite.plotting.view import View, robust_view
 from hypermap_lite.typing import BoolArray, FloatArray
 
@@ -50,7 +51,7 @@ def plot_pareto(
     objectives has a panel. Error bars are one standard error over the replicates. All fronts and the reference point
     are in view; evaluations far from both and from most others are counted, and marked at the border.
     """
-    runs = load_runs(folders, labels)
+    runs = load_settled(folders, labels)
     n_objectives = len(runs[0].objectives)
     if not 2 <= n_objectives <= MAX_OBJECTIVES:
         raise UsageError(
@@ -253,7 +254,14 @@ def _numbers_behind(runs: Sequence[Run]) -> tuple[list[str], list[list[object]]]
     names = [o.name for o in runs[0].objectives]
     header = ["label", "run", "evaluation", "phase", "on_front", *names, *(f"{name}_sem" for name in names)]
     rows = [
-        [run.label, str(run.place), i + 1, run.rows[i].get("phase", ""), bool(front[i]), *map(float, numbers[i])]
+        [
+            run.label,
+            str(run.place),
+            trial_of(run, i) + 1,
+            run.rows[i].get("phase", ""),
+            bool(front[i]),
+            *map(float, numbers[i]),
+        ]
         for run in runs
         for front, numbers in [(run.is_front, np.hstack([run.values, run.standard_errors]))]
         for i in np.flatnonzero(run.is_completed)

@@ -12,6 +12,7 @@ from hypermap_lite.errors import UsageError, nearest
 from hypermap_lite.objectives import to_minimization
 from hypermap_lite.pareto import infer_reference_point
 from hypermap_lite.plotting.runs import Run
+from hypermap_lite.plotting.settled import settled
 from hypermap_lite.typing import FloatArray
 
 
@@ -68,7 +69,7 @@ def common_reference_point(runs: Sequence[Run], given: Mapping[str, float] | Non
     chosen: dict[str, float | None] = {
         name: given[name] if given and name in given else _scenarios_value(runs, i) for i, name in enumerate(names)
     }
-    inferred = to_minimization(objectives, infer_reference_point(np.vstack([run.Y for run in runs])))
+    inferred = to_minimization(objectives, infer_reference_point(np.vstack([settled(run).Y for run in runs])))
     values = [inferred[i] if chosen[name] is None else chosen[name] for i, name in enumerate(names)]
     return ReferencePoint(values=np.array(values, dtype=float), names=names, is_inferred=None in chosen.values())
 

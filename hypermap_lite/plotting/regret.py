@@ -11,6 +11,7 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.plotting import style, traces
 from hypermap_lite.plotting.reference import number
 from hypermap_lite.plotting.runs import Run, Source, by_label, load_runs, require_drawable
+from hypermap_lite.plotting.settled import settled, trace
 from hypermap_lite.typing import FloatArray
 
 
@@ -63,10 +64,10 @@ def plot_regret(
 def best_value(runs: Sequence[Run]) -> float:
     """Return the best value of the first objective in all runs, as the user directed it."""
     sign = runs[0].objectives[0].sign
-    return sign * float(min(np.nanmin(run.Y[:, 0]) for run in runs))
+    return sign * float(min(np.nanmin(settled(run).Y[:, 0]) for run in runs))
 
 
 def regret(run: Run, optimum: float) -> FloatArray:
     """Return the distance of the best value so far from the optimum, shape (n,), >= 0 if it is one; NaN before any."""
-    best: FloatArray = np.fmin.accumulate(run.Y[:, 0])
+    best: FloatArray = trace(run, lambda Y: np.fmin.accumulate(Y[:, 0]))
     return best - run.objectives[0].sign * optimum

@@ -13,9 +13,10 @@ import numpy as np
 from hypermap_lite.errors import RunFolderError, ScenarioError, nearest
 from hypermap_lite.history.csv_format import read_records
 from hypermap_lite.objectives import to_minimization
-from hypermap_lite.pareto import hypervolume, hypervolume_trace, non_dominated
+from hypermap_lite.pareto import hypervolume, non_dominated
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
 from hypermap_lite.plotting.runs import Run, load_run
+from hypermap_lite.plotting.settled import beginning, settled, trace, volume_trace
 from hypermap_lite.study.folder import is_finished
 from hypermap_lite.study.specification import Study, Variant
 from hypermap_lite.study.statistics import (
@@ -155,13 +156,12 @@ def _finished_runs(study: Study) -> dict[Variant, list[Run]]:
 
 
 def _repetition(study: Study, run: Run, corner: FloatArray | None) -> Repetition:
-    Y = run.Y
-    best = np.fmin.accumulate(Y, axis=0)
+    best = trace(run, lambda Y: np.fmin.accumulate(Y, axis=0))
     seconds = [float(row.get(key) or 0.0) for row in run.rows for key in ("suggest_seconds", "evaluate_seconds")]
     return Repetition(
         run=run,
         seed=run.folder.name,
-        score=-best[:, 0] if corner is None else hypervolume_trace(Y, corner),
+        score=-best[:, 0] if corner is None else volume_trace(run, corner),
         best=to_minimization(run.objectives, best),
         metrics={name: _metric(run, name, AGGREGATES[how]) for name, how in study.metrics.items()},
         seconds=sum(seconds),
@@ -203,7 +203,8 @@ def _number(place: str, text: str, file: Path) -> float:
 
 def _union_front(runs: Sequence[Run], n: int) -> list[tuple[Run, int]]:
     """Return run and row of each of the first n evaluations that none of any run dominates, each point once."""
-    fronts = [np.flatnonzero(non_dominated(run.Y[:n])) for run in runs]
+    runs = [settled(beginning(run, n)) for run in runs]
+    fronts = [np.flatnonzero(run.is_front) for run in runs]
     places = [(run, int(i)) for run, front in zip(runs, fronts, strict=True) for i in front]
     Y = np.vstack([run.Y[front] for run, front in zip(runs, fronts, strict=True)])
     _, first = np.unique(Y, axis=0, return_index=True)

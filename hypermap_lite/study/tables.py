@@ -21,6 +21,7 @@ import numpy as np
 from hypermap_lite.history.csv_format import format_record
 from hypermap_lite.history.files import make_folder, write_atomically
 from hypermap_lite.history.scenario_record import installed_versions
+from hypermap_lite.plotting.settled import trial_of
 from hypermap_lite.study.specification import Study
 from hypermap_lite.study.statistics import Interval, mean_and_standard_error
 from hypermap_lite.study.summary import Summary
@@ -114,7 +115,12 @@ def _front_rows(summary: Summary) -> Iterator[list[object]]:
     columns = [*first.columns[: first.columns.index(names[0])], *names]
     yield ["variant", "seed", "trial", *columns]
     for run, i in summary.union_front:
-        yield [run.folder.parent.name, run.folder.name, i, *(run.rows[i].get(name, "") for name in columns)]
+        yield [
+            run.folder.parent.name,
+            run.folder.name,
+            trial_of(run, i),
+            *(run.rows[i].get(name, "") for name in columns),
+        ]
 
 
 def _as_csv(rows: Iterator[list[object]]) -> str:

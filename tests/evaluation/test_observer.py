@@ -37,3 +37,12 @@ def test_line_tells_the_trial_in_short():
 def test_line_of_a_failure_tells_its_reason():
     failed = replace(row(), state=State.FAILED, error="it broke")
     assert describe(failed, "") == "trial 12 model failed 3.2 s it broke"
+
+
+def test_confirmed_configuration_counts_by_its_mean():
+    tracker = FrontTracker(TWO)
+    again = replace(row(f=8, g=3), suggestion=Suggestion(trial=1, configuration={"x": 1.0}, phase="confirm"))
+    other = Suggestion(trial=13, configuration={"x": 2.0}, phase="model")
+    rows = [row(f=0, g=3), replace(row(f=1, g=3), suggestion=other), again]
+    assert [tracker.add(r) for r in rows] == ["front +1", "", "front of 1"]
+    assert tracker._front.tolist() == [[1, -3]]  # (0 + 8) / 2 is dominated now

@@ -127,3 +127,19 @@ def test_front_counts_all_objectives_keeps_ties_and_leaves_others_out(tmp_path):
         run.append_evaluation(evaluation(4, None))
         run.write_pareto()
     assert [row["Timestamp"] for row in rows_of(tmp_path / "out" / "pareto.csv")] == ["1", "2", "3"]
+
+
+def test_front_of_a_confirmed_configuration_is_still_this_run_when_it_goes_on(tmp_path, caplog):
+    first = evaluation(0, reward=9.0, replicates=1)
+    again = replace(
+        first, suggestion=replace(first.suggestion, trial=1, phase="confirm"), values={"reward": 1.0, "cost": 4.0}
+    )
+    with open_run(tmp_path) as run:
+        run.append_evaluation(first)
+        run.append_evaluation(again)
+        run.write_pareto()
+    written = (tmp_path / "out" / "pareto.csv").read_text()
+    assert "5.0,3.0" in written
+    with caplog.at_level(logging.WARNING), open_run(tmp_path):
+        assert (tmp_path / "out" / "pareto.csv").read_text() == written
+    assert "it held something else" not in caplog.text

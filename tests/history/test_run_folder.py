@@ -235,3 +235,16 @@ def test_run_of_failures_alone_starts_from_nothing(tmp_path):
         run.append_evaluation(evaluation(0))
     with folder(tmp_path) as run:
         assert [e.is_completed for e in run.evaluations] == [True]
+
+
+def test_front_has_a_confirmed_configuration_once_with_its_mean(tmp_path):
+    with folder(tmp_path) as run:
+        lucky, other = evaluation(0, reward=9.0, cost=2.0, replicates=1), evaluation(1, reward=4.0, cost=1.0)
+        again = replace(lucky.suggestion, trial=2, phase="confirm")
+        for row in (lucky, other, replace(lucky, suggestion=again, values={"reward": 1.0, "cost": 0.5}, replicates=3)):
+            run.append_evaluation(row)
+        run.write_pareto()
+        assert len(rows_of(run.history_path)) == 3
+        first, second = rows_of(run.pareto_path)
+        assert (first["trial"], first["reward"], first["cost"], first["replicates"]) == ("0", "3.0", "0.875", "4")
+        assert second["trial"] == "1"
