@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hypermap_lite import assembly
-from hypermap_lite.errors import NoValidEvaluationError, ScenarioError, UsageError
+from hypermap_lite.errors import NoValidEvaluationError, ScenarioError
 from hypermap_lite.evaluation.channel import Channel, standard_channel
 from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
 from hypermap_lite.evaluation.earlier import earlier_evaluations
@@ -22,11 +22,11 @@ from hypermap_lite.evaluation.executor_choice import choose_executor
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, RunObserver
 from hypermap_lite.evaluation.runner import Runner, StopReason
-from hypermap_lite.history.history import History
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.objectives import Objective, reference_point_of, values_of
 from hypermap_lite.pareto import hypervolume, infer_reference_point
-from hypermap_lite.reports import ParameterImportance, PosteriorBest, parameter_importance, posterior_best
+from hypermap_lite.reports import ParameterImportance, PosteriorFront
+from hypermap_lite.reports.at_end import make_reports
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.lint import single_points
 from hypermap_lite.scenario.model import Scenario
@@ -71,8 +71,14 @@ class Result:
     parameter_importance: ParameterImportance | None = None
     """How much each parameter matters, if the scenario asks for it and there are enough evaluations."""
 
-    posterior_best: PosteriorBest | None = None
-    """What is best by the surrogate, likewise."""
+    posterior_best: PosteriorFront | None = None
+    """What is best by the surrogate, likewise: the `posterior_front`."""
+
+    posterior_front: PosteriorFront | None = None
+    """The evaluated configurations that are best by the surrogate's means, as ``posterior_front.csv`` has them.
+
+    None if there are too few evaluations for a model, or too many for one that no other part of the run needs.
+    """
 
     def to_frame(self) -> pd.DataFrame:
         """Return ``history.csv`` as a data frame: a row per configuration, every number as it was written."""
@@ -221,31 +227,27 @@ def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) ->
     with runner.folder as folder, closing(runner.executor):  # workers end before the lock is released
         if retry_failed:
             folder.set_failures_aside()
+        if len(folder.evaluations) < scenario.budget.evaluations:
+            folder.write_posterior_front(None)  # it is of an earlier end, and more rows will come
         for note in scenario.notes:
             logger.info("%s", note, extra=SAID_BY_COMMAND)
         for path, text in single_points(scenario):
             logger.warning("%s: %s", path, text)
         for warning in assembly.evaluator_warnings(scenario, runner.evaluator):
             logger.warning("%s", warning)
-        return _with_reports(result_of(folder, runner.run()), scenario, folder)
+        return _with_reports(result_of(folder, runner.run()), scenario, runner)
 
 
-def _with_reports(result: Result, scenario: Scenario, folder: RunFolder) -> Result:
-    """Add the reports that the scenario asks for, and log them; one that fails is no failure of the run."""
+def _with_reports(result: Result, scenario: Scenario, runner: Runner) -> Result:
     if result.stop_reason is StopReason.INTERRUPTED:
         return result
-    history = History(folder.space, folder.objectives)
-    history.extend(folder.evaluations)
-    made: dict[str, Any] = {}
-    for name, report in (("parameter_importance", parameter_importance), ("posterior_best", posterior_best)):
-        if getattr(scenario.output, name):
-            try:
-                made[name] = report(scenario, history)
-            except UsageError as error:
-                logger.warning("no %s: %s", name, error)
-            else:
-                logger.info("%s", made[name])
-    return replace(result, **made)
+    reports = make_reports(scenario, runner.folder, runner.optimizer)
+    return replace(
+        result,
+        parameter_importance=reports.parameter_importance,
+        posterior_front=reports.posterior_front,
+        posterior_best=reports.posterior_front if scenario.output.posterior_best else None,
+    )
 
 
 def _say_goodbye(executor: Executor) -> None:

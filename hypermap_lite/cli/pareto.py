@@ -22,11 +22,14 @@ EPILOG: Final = """\
 examples:
   python -m hypermap_lite pareto outputs/branin
   python -m hypermap_lite pareto outputs/branin --csv > front.csv
+  python -m hypermap_lite pareto outputs/branin --posterior
   python -m hypermap_lite pareto branin_output_samples.csv --objectives Value,Energy
 
 The front is also written to pareto.csv in the run folder, if that can be written. As CSV it goes to stdout and the
-hypervolume to stderr. A CSV file without a run folder needs --scenario or --objectives; its front goes to a file beside
-it that is called pareto where it is called samples.
+hypervolume to stderr. With --posterior the surrogate of the run's scenario is fitted to the history: the evaluated
+configurations whose means no other dominates are printed, and written to posterior_front.csv.
+A CSV file without a run folder needs --scenario or --objectives; its front goes to a file beside it that is called
+pareto where it is called samples.
 """
 
 
@@ -43,12 +46,21 @@ def add_parser(subparsers: Subparsers) -> None:
     add_options(parser)
     parser.add_argument("--output", "-o", metavar="FILE", help="where the front is written, instead")
     add_reference_point_option(parser)
+    parser.add_argument(
+        "--posterior",
+        action="store_true",
+        help="the front by the means of the scenario's surrogate instead, which noise does not flatter",
+    )
     parser.add_argument("--csv", action="store_true", help="print CSV (the default unless stdout is a terminal)")
     parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print the front and its hypervolume, and write ``pareto.csv`` where the folder can be written."""
+    if args.posterior:
+        from hypermap_lite.cli import posterior
+
+        return posterior.execute(args)
     from hypermap_lite.history.files import write_atomically
     from hypermap_lite.plotting.settled import load_settled
 

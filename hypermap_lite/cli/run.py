@@ -113,7 +113,10 @@ def _show(result: Result, scenario: Scenario, args: Namespace) -> None:
     for report in (result.parameter_importance, result.posterior_best):
         if report is not None:
             print(f"\n{report}")
-    for path in (result.run_folder / "history.csv", result.run_folder / "pareto.csv", *_exports(scenario)):
+    files = [result.run_folder / "history.csv", result.run_folder / "pareto.csv"]
+    if result.posterior_front is not None:
+        files.append(result.run_folder / "posterior_front.csv")
+    for path in (*files, *_exports(scenario)):
         print(short(path))
     if not args.no_plot:
         with _only_a_note("picture"):

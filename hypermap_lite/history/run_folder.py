@@ -104,6 +104,11 @@ class RunFolder:
         return self.path / "pareto.csv"
 
     @property
+    def posterior_front_path(self) -> Path:
+        """``posterior_front.csv``: the configurations that are best by the surrogate."""
+        return self.path / "posterior_front.csv"
+
+    @property
     def scenario_path(self) -> Path:
         """``scenario.json``: the effective scenario and the versions in use."""
         return self.path / "scenario.json"
@@ -257,6 +262,20 @@ class RunFolder:
             return []
         is_optimal = non_dominated(np.array([values_of(self.objectives, e.values) for e in completed]))
         return [e for e, keep in zip(completed, is_optimal, strict=True) if keep]
+
+    def write_posterior_front(self, text: str | None) -> None:
+        """Replace ``posterior_front.csv``; None takes it away, as it is not that of the rows any more.
+
+        A folder in which that cannot be done only gets a warning: the file says nothing that was not known.
+        """
+        try:
+            with explained(self.posterior_front_path):
+                if text is None:
+                    self.posterior_front_path.unlink(missing_ok=True)
+                else:
+                    write_atomically(self.posterior_front_path, text)
+        except RunFolderError as error:
+            logger.warning("%s", str(error).splitlines()[0])
 
     def sort_replicates(self) -> None:
         """Rewrite ``evaluations.csv`` in the order of trials and replicates, whichever finished first."""

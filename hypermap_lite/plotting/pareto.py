@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 
 from hypermap_lite.errors import UsageError
 from hypermap_lite.plotting import style
+from hypermap_lite.plotting.posterior import PosteriorPoints, posterior_points
 from hypermap_lite.plotting.reference import ReferencePoint, common_reference_point
 from hypermap_lite.plotting.runs import Run, Source, by_label, legend_labels, require_drawable
 from hypermap_lite.plotting.settled import load_settled, trial_of
@@ -49,7 +50,8 @@ def plot_pareto(
 
     With two objectives the front is a staircase that bounds the dominated region; with three to five each pair of
     objectives has a panel. Error bars are one standard error over the replicates. All fronts and the reference point
-    are in view; evaluations far from both and from most others are counted, and marked at the border.
+    are in view; evaluations far from both and from most others are counted, and marked at the border. The picture of
+    a single run shows its posterior front too, if there is a ``posterior_front.csv``.
     """
     runs = load_settled(folders, labels)
     n_objectives = len(runs[0].objectives)
@@ -131,6 +133,9 @@ def _draw_panel(axes: Axes, runs: Sequence[Run], pair: tuple[int, int], referenc
     detail = _detail_for(runs)
     corner = reference.values[columns]
     fronts = np.vstack([run.values[run.is_front][:, columns] for run in runs])
+    posterior = _posterior(runs)
+    if posterior is not None:
+        fronts = np.vstack([fronts, posterior.mean[:, columns]])
     rest = np.vstack([run.values[run.is_completed & ~run.is_front][:, columns] for run in runs])
     view = robust_view(np.vstack([fronts, corner]), rest[:0] if detail is Detail.FRONT_ONLY else rest)
     view.apply(axes)
@@ -139,10 +144,17 @@ def _draw_panel(axes: Axes, runs: Sequence[Run], pair: tuple[int, int], referenc
         for run in group:
             _draw_points(axes, run, columns, index, detail)
             is_outside.append(_draw_outside(axes, run, columns, index, detail, view))
+    if posterior is not None:
+        posterior.draw(axes, columns)
     axes.plot(*corner, linestyle="none", marker="x", markersize=9, markeredgewidth=2.2, color="black", zorder=6)
     axes.set_xlabel(style.axis_label(runs[0].objectives[pair[0]]))
     axes.set_ylabel(style.axis_label(runs[0].objectives[pair[1]]))
     return np.concatenate(is_outside)
+
+
+def _posterior(runs: Sequence[Run]) -> PosteriorPoints | None:
+    """Return the posterior front of the only run; None if it has none, or there are several runs."""
+    return posterior_points(runs[0]) if len(runs) == 1 else None
 
 
 def _draw_outside(axes: Axes, run: Run, columns: list[int], index: int, detail: Detail, view: View) -> BoolArray:
@@ -242,6 +254,9 @@ def _legend(runs: Sequence[Run], reference: ReferencePoint, *, line: str, n_outs
         entries.append(style.legend_entry("initial design", style.GREY, "s", hollow=True))
     if shows_all and any(np.isfinite(run.standard_errors).any() for run in runs):
         entries.append(style.legend_entry("\N{PLUS-MINUS SIGN} standard error", style.INK, "|", size=11))
+    posterior = _posterior(runs)
+    if posterior is not None:
+        entries.insert(1, posterior.legend_entry())
     if n_outside:
         entries.append(style.legend_entry(f"{n_outside} outside", style.GREY, "v"))
     kind = "reference point (inferred)" if reference.is_inferred else "reference point"
@@ -257,7 +272,7 @@ def _numbers_behind(runs: Sequence[Run]) -> tuple[list[str], list[list[object]]]
         [
             run.label,
             str(run.place),
-            trial_of(run, i) + 1,
+            trial_of(run, int(i)) + 1,
             run.rows[i].get("phase", ""),
             bool(front[i]),
             *map(float, numbers[i]),

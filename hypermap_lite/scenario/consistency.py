@@ -13,7 +13,7 @@ from hypermap_lite.history.rows import RESERVED_COLUMNS
 from hypermap_lite.scenario.defaults import default_samples, has_belief
 from hypermap_lite.scenario.messages import enumerate_names
 
-RUN_FILES: Final = ("scenario.json", "history.csv", "evaluations.csv", "pareto.csv", "run.log")
+RUN_FILES: Final = ("scenario.json", "history.csv", "evaluations.csv", "pareto.csv", "posterior_front.csv", "run.log")
 """Files of the run folder that no other file may take the place of."""
 
 RESERVED_NAMES: Final = RESERVED_COLUMNS | {"feasible"}

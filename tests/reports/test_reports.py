@@ -1,4 +1,4 @@
-"""Tests for reports.py."""
+"""Tests for the reports at the end of a run."""
 
 import json
 import logging
@@ -10,7 +10,7 @@ from hypermap_lite.assembly import build_history
 from hypermap_lite.cli import main
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
-from hypermap_lite.reports import parameter_importance, posterior_best
+from hypermap_lite.reports import parameter_importance, posterior_front
 from hypermap_lite.scenario import load_scenario
 
 SCENARIO = {
@@ -91,7 +91,7 @@ def test_lucky_draw_is_not_the_best_of_the_posterior():
     scenario = one_axis({"name": "f", "goal": "maximize"})
     rows = [(0.5 + d, {"f": 10.0}) for d in (-0.02, -0.01, 0.01, 0.02)] + [(0.5, {"f": 9.9})]
     rows += [(x, {"f": y}) for x, y in ((0.0, 1.0), (0.01, 11.0), (0.02, 1.0), (0.03, 0.9), (0.9, 1.0), (0.015, 1.1))]
-    (best,) = posterior_best(scenario, history_of(scenario, rows)).predictions
+    (best,) = posterior_front(scenario, history_of(scenario, rows)).predictions
     assert abs(best.configuration["x"] - 0.5) < 0.03
     assert best.mean["f"] == pytest.approx(10, abs=1)
     assert best.std["f"] > 0
@@ -100,18 +100,18 @@ def test_lucky_draw_is_not_the_best_of_the_posterior():
 def test_several_objectives_have_all_that_are_not_dominated_by_their_means():
     scenario = one_axis({"name": "f"}, {"name": "g", "goal": "maximize"})
     history = history_of(scenario, [(i / 8, {"f": (i / 8 - 0.25) ** 2, "g": -((i / 8 - 0.75) ** 2)}) for i in range(9)])
-    best = posterior_best(scenario, history)
+    best = posterior_front(scenario, history)
     assert [p.configuration["x"] for p in best.predictions] == pytest.approx([0.25, 0.375, 0.5, 0.625, 0.75])
 
 
 def test_infeasible_configurations_are_never_the_best():
     scenario = one_axis({"name": "f"})
     history = history_of(scenario, [(0.0, None), (0.5, {"f": 1.0}), (1.0, {"f": 2.0})])
-    (best,) = posterior_best(scenario, history).predictions
+    (best,) = posterior_front(scenario, history).predictions
     assert best.trial == 1
 
 
-@pytest.mark.parametrize("report", [parameter_importance, posterior_best])
+@pytest.mark.parametrize("report", [parameter_importance, posterior_front])
 def test_too_few_evaluations_are_an_error_that_says_so(report):
     scenario = one_axis({"name": "f"})
     with pytest.raises(UsageError, match="1 completed evaluation; a model needs at least 2"):
