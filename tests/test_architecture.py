@@ -22,6 +22,7 @@ LAYERS = (
     ("optimizers",),
     ("scenario",),
     ("evaluation",),
+    ("space_assembly",),
     ("assembly",),
     ("starting",),
     ("reports",),

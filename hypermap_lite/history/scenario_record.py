@@ -20,6 +20,7 @@ logger = logging.getLogger(__name__)
 
 MAY_DIFFER: Final = (
     "$.application_name",
+    "$.budget.confirm_front",
     "$.budget.evaluations",
     "$.budget.minutes",
     "$.evaluator.max_consecutive_failures",

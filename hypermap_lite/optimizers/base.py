@@ -15,6 +15,7 @@ from threadpoolctl import ThreadpoolController
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.history.history import History
+from hypermap_lite.optimizers.confirmation import Confirmation
 
 
 @cache
@@ -42,6 +43,8 @@ class Optimizer(ABC):
         self.history = history
         self._pending: dict[int, Suggestion] = {}
         self._told: dict[int, Evaluation] = {}
+        self.confirmation: Confirmation | None = None
+        """What chooses the last evaluations of the budget, if they shall confirm the front."""
 
     @property
     def pending(self) -> list[Suggestion]:
@@ -69,7 +72,7 @@ class Optimizer(ABC):
             with single_threaded():
                 while len(suggestions) < n:
                     start = process_time()
-                    suggestion = self._suggest(len(self.history) + len(self.in_flight))
+                    suggestion = self._next(len(self.history) + len(self.in_flight))
                     if suggestion is None:
                         break
                     suggestion = replace(suggestion, seconds=process_time() - start)
@@ -80,6 +83,18 @@ class Optimizer(ABC):
                 del self._pending[suggestion.trial]
             raise
         return suggestions
+
+    def _next(self, trial: int) -> Suggestion | None:
+        """Return the suggestion of a trial; None if no configuration is left to explore, nor to confirm."""
+        confirmation = self.confirmation
+        if confirmation is None:
+            return self._suggest(trial)
+        if confirmation.is_due(trial):
+            return confirmation.suggestion(self.history, self.in_flight, trial) or self._suggest(trial)
+        suggestion = self._suggest(trial)
+        if suggestion is None and confirmation.is_left(self.history, self.in_flight):
+            suggestion = confirmation.suggestion(self.history, self.in_flight, trial)
+        return suggestion
 
     def tell(self, evaluations: Sequence[Evaluation]) -> None:
         """Record finished evaluations of pending suggestions, in any order.

@@ -104,7 +104,12 @@ class BayesianOptimizer(Optimizer):
 
     def posterior(self) -> Posterior:
         """Return what the surrogate knows after the completed evaluations, of which there must be one."""
-        return self._models.posterior()
+        return self.fitted()[0]
+
+    def fitted(self) -> tuple[Posterior, FloatArray]:
+        """Return the `posterior`, and the points it was fitted to, shape (n, d)."""
+        X = self.history.X()
+        return self._models.posterior(), X
 
     def _suggest(self, trial: int) -> Suggestion | None:
         if trial < len(self._initial):

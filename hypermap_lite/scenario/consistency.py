@@ -163,6 +163,14 @@ def _check_budget(document: Mapping[str, Any]) -> None:
             allowed=f"1 to {evaluations}",
             hint="Raise budget.evaluations or shrink the design.",
         )
+    confirming = document["budget"]["confirm_front"]
+    if confirming >= evaluations:
+        raise ScenarioError(
+            "$.budget.confirm_front",
+            f"{confirming} of {evaluations} evaluations cannot repeat others",
+            allowed=f"0 to {evaluations - 1}",
+            hint="Raise budget.evaluations by as many as shall be repeated.",
+        )
 
 
 def _check_client(evaluator: Mapping[str, Any]) -> None:

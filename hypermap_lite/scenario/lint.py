@@ -44,6 +44,7 @@ def lint(scenario: Scenario, space: SearchSpace | None = None) -> list[str]:
         *_reference_points(scenario),
         *_constraints(space),
         *_budget(scenario, space),
+        *_confirmation(scenario),
         *_workers(scenario),
         *lint_command(scenario),
     ]
@@ -186,6 +187,18 @@ def _budget(scenario: Scenario, space: SearchSpace | None) -> Iterator[tuple[str
     size = math.prod(_n_levels(p) for p in scenario.parameters) if space is None else space.n_configurations
     if size < evaluations:
         yield "$.budget.evaluations", f"there are only {size:.0f} configurations; the run ends after them."
+
+
+def _confirmation(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    n, path = scenario.budget.confirm_front, "$.budget.confirm_front"
+    left = scenario.budget.evaluations - scenario.design.number_of_samples
+    if 0 < left < n or (n and left <= 0):
+        yield path, f"the design comes first, so that only {max(left, 0)} evaluations can confirm the front."
+    component = scenario.evaluator.component
+    if n and component is not None and component.type == "exhaustive":
+        yield path, "a table answers the same each time; these evaluations bring nothing."
+    elif n and scenario.surrogate.options.get("noise") is False:
+        yield path, "the surrogate takes evaluations to be exact (noise is false); repeating them brings nothing."
 
 
 def _n_levels(parameter: ParameterSpec) -> float:

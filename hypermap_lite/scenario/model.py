@@ -88,6 +88,14 @@ class BudgetSpec:
     minutes: float | None = None
     """No new batch is started after this wall-clock time [min]."""
 
+    confirm_front: int = 0
+    """Evaluations at the end that repeat configurations which may be on the front."""
+
+    @property
+    def exploring(self) -> int:
+        """Evaluations of new configurations."""
+        return self.evaluations - self.confirm_front
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcquisitionSpec:

@@ -122,20 +122,24 @@ def _feasible_output(scenario: Scenario) -> list[str]:
 
 def _method(scenario: Scenario) -> list[str]:
     """Say which evaluations are chosen how, and what of the scenario decides that."""
-    total = scenario.budget.evaluations
-    n = min(scenario.design.number_of_samples, total)
+    whole = scenario.budget.evaluations
+    n = min(scenario.design.number_of_samples, whole)
+    total = max(whole - scenario.budget.confirm_front, n)
     lines = [f"evaluations 1 to {n}: {scenario.design.type}{_options(scenario.design.options)}"]
+    last = [f"evaluations {total + 1} to {whole}: repeat those whose worth for the front is least certain"]
+    last *= total < whole
     acquisition, m = scenario.acquisition, len(scenario.objectives)
     if scenario.optimizer.type != "bayesian":
         lines += [f"evaluations {n + 1} to {total}: {_component(scenario.optimizer)}"] * (n < total)
         if m > 1 and scenario.optimizer.type in ("local_search", "cma_es"):
             lines.append(f"{m} objectives: {_component(acquisition.scalarization)} with fixed weights")
-        return lines
+        return [*lines, *last]
     if n < total:
         chosen = f"{_component(acquisition.function)} on a {_component(scenario.surrogate)}"
         lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
     if epsilon := scenario.optimizer.options.get("epsilon"):
         lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
+    lines += last
     lines.append(_trade_offs(scenario))
     if acquisition.feasibility_weighting is None:
         lines.append("infeasible evaluations: not in the acquisition (feasibility_weighting is none)")
@@ -170,7 +174,8 @@ def _prior_use(scenario: Scenario) -> str:
     if weighting.type == "bopro":
         return f"priors: bopro{_options(options)} takes the place of {scenario.acquisition.function.type}{care}"
     if options.get("beta") is None:
-        options["beta"] = 0.1 * max(scenario.budget.evaluations - scenario.design.number_of_samples, 1)
+        n_model = scenario.budget.exploring - scenario.design.number_of_samples
+        options["beta"] = 0.1 * max(n_model, 1)
     return f"priors: acquisition weighted by {weighting.type}{_options(options)}{care}"
 
 

@@ -71,6 +71,14 @@ def test_an_objective_may_be_called_like_a_placeholder() -> None:
     check_consistency(complete(objectives=[{"name": "python"}]))
 
 
+def test_not_all_evaluations_can_repeat_others() -> None:
+    budget = {"evaluations": 10, "confirm_front": 10}
+    problem = r"\$.budget.confirm_front: 10 of 10 evaluations cannot repeat others"
+    with pytest.raises(ScenarioError, match=problem) as info:
+        check_consistency(complete(budget=budget))
+    assert info.value.allowed == "0 to 9"
+
+
 def test_a_design_may_take_the_whole_budget() -> None:
     check_consistency(complete(budget={"evaluations": 8}, design_of_experiment={"number_of_samples": 8}))
 

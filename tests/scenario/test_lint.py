@@ -166,6 +166,24 @@ def test_commands_are_looked_at() -> None:
     assert warning.startswith("$.evaluator.command: no placeholder passes on 'x'")
 
 
+@pytest.mark.parametrize(
+    ("sections", "says"),
+    [
+        pytest.param({"budget": {"evaluations": 8}}, "only 2 evaluations can confirm", id="design"),
+        pytest.param({"surrogate": {"noise": False}}, "repeating them brings nothing", id="exact surrogate"),
+        pytest.param({"evaluator": {"type": "exhaustive", "file": "t.csv"}}, "a table answers the same", id="table"),
+    ],
+)
+def test_confirmations_that_bring_nothing_are_named(sections: dict[str, Any], says: str) -> None:
+    budget = {"evaluations": 30, "confirm_front": 4, **sections.get("budget", {})}
+    (warning,) = [text for text in warnings(**{**sections, "budget": budget}) if "confirm_front" in text]
+    assert says in warning
+
+
+def test_a_confirmation_with_room_is_fine() -> None:
+    assert warnings(budget={"evaluations": 30, "confirm_front": 4}) == []
+
+
 def test_workers_that_never_get_a_call_are_named() -> None:
     (warning,) = warnings(evaluator={"workers": 4, "replicates": 3})
     assert "only 3 calls" in warning

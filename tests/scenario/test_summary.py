@@ -41,6 +41,19 @@ def test_the_hypervolume_of_many_objectives_is_looked_for_in_random_directions()
     assert "4 objectives: noisy expected improvement in random directions; reference point as given" in text
 
 
+def test_the_last_evaluations_are_said_to_confirm_the_front() -> None:
+    budget = {"evaluations": 20, "confirm_front": 5}
+    for optimizer in ("bayesian", "random_search"):
+        text = page(budget=budget, optimizer=optimizer)
+        assert "evaluations 9 to 15: " in text
+        assert "evaluations 16 to 20: repeat those whose worth for the front is least certain" in text
+
+
+def test_the_beta_of_pibo_counts_no_repetitions() -> None:
+    priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
+    assert "pibo(beta=2, floor" in page(priors=priors, budget={"evaluations": 38, "confirm_front": 10})
+
+
 def test_the_beta_of_pibo_is_worked_out() -> None:
     priors = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
     text = page(priors=priors, budget={"evaluations": 28}, objectives=[{"name": "cost"}])
