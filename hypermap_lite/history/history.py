@@ -2,18 +2,51 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation
+from hypermap_lite.history.pooling import as_one, groups_of, key_of
+from hypermap_lite.history.replicate_noise import shrunk_variances
 from hypermap_lite.objectives import Objective, values_of
 from hypermap_lite.space.search_space import SearchSpace
-from hypermap_lite.typing import BoolArray, FloatArray
+from hypermap_lite.typing import BoolArray, FloatArray, IntArray
 
 LARGEST = 1e150
 """Size at which objective values are cut for the models; the files keep them as they are."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Samples:
+    """What is known of n distinct completed configurations by all their replicates."""
+
+    X: FloatArray
+    """Codes, shape (n, d), in the order in which each was first evaluated."""
+
+    Y: FloatArray
+    """Means over all replicates, to be minimized, shape (n, m)."""
+
+    replicates: IntArray
+    """Number of replicates, shape (n,)."""
+
+    variances: FloatArray | None
+    """Of single replicates, shrunk towards what is usual, shape (n, m); None where there is one replicate everywhere,
+    or the spread of an objective is not known at all."""
+
+    freedom: FloatArray
+    """Degrees of freedom of each configuration's own sample variance, shape (n, m)."""
+
+    own_variances: FloatArray
+    """These sample variances, shape (n, m); zero without a degree of freedom."""
+
+    @property
+    def noise_variance(self) -> FloatArray | None:
+        """Variance of each mean, in the objectives' units squared, shape (n, m); None where the noise is not known."""
+        return None if self.variances is None else self.variances / self.replicates[:, None]
 
 
 class History:
@@ -71,6 +104,36 @@ class History:
         Values beyond 1e150 in size are cut there: models square them.
         """
         return objectives_of(self.completed, self.objectives)
+
+    def samples(self, n_rows: int | None = None) -> Samples:
+        """Return the distinct completed configurations with all their replicates pooled.
+
+        Rows of one configuration are pooled whatever their phase; if one of them is not completed, the configuration
+        is left out.
+
+        Parameters
+        ----------
+        n_rows
+            Look at the first so many rows only.
+        """
+        rows = self._evaluations[:n_rows]
+        groups = groups_of(key_of(row.configuration) for row in rows)
+        known = [one for group in groups if (one := as_one([rows[i] for i in group])).is_completed]
+        names = [o.name for o in self.objectives]
+        shape = (len(known), len(names))
+        errors = np.array([[e.standard_errors.get(name, math.nan) for name in names] for e in known]).reshape(shape)
+        replicates = np.array([e.replicates for e in known], dtype=int)
+        is_known = np.isfinite(errors) & (replicates[:, None] > 1)
+        own = np.where(is_known, np.minimum(np.where(is_known, errors, 0.0), LARGEST) ** 2 * replicates[:, None], 0.0)
+        freedom = np.where(is_known, replicates[:, None] - 1.0, 0.0)
+        return Samples(
+            X=self.space.encode([e.configuration for e in known]),
+            Y=objectives_of(known, self.objectives),
+            replicates=replicates,
+            variances=shrunk_variances(own, freedom),
+            freedom=freedom,
+            own_variances=own,
+        )
 
     def feasibility(self) -> tuple[FloatArray, BoolArray]:
         """Return the codes of the completed and infeasible evaluations, shape (n, d), and which are feasible, (n,)."""

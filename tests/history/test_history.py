@@ -39,3 +39,57 @@ def test_trials_come_in_order() -> None:
     history = History(SPACE, OBJECTIVES)
     with pytest.raises(UsageError, match="trial 1 cannot be recorded: the next trial is 0"):
         history.append(row(1))
+
+
+def sampled(trial: int, x: float, sample: list[float], phase: str = "design") -> Evaluation:
+    """Return the row of these replicates of the cost; the speed is ten times as much."""
+    n, error = len(sample), np.std(sample, ddof=1) / np.sqrt(len(sample)) if len(sample) > 1 else np.nan
+    return Evaluation(
+        suggestion=Suggestion(trial=trial, configuration={"x": x}, phase=phase),
+        state=State.COMPLETED,
+        values={"cost": float(np.mean(sample)), "speed": 10 * float(np.mean(sample))},
+        standard_errors={"cost": float(error), "speed": 10 * float(error)},
+        replicates=n,
+    )
+
+
+def test_samples_pool_the_rows_of_a_configuration() -> None:
+    history = History(SPACE, OBJECTIVES)
+    history.extend([sampled(0, 1.0, [1, 3]), sampled(1, 2.0, [4, 4]), sampled(2, 1.0, [5, 7, 9], "confirm")])
+    samples = history.samples()
+    assert samples.X.tolist() == [[0.5], [1.0]]
+    assert pytest.approx(np.array([[5, -50], [4, -40]])) == samples.Y
+    assert samples.replicates.tolist() == [5, 2]
+    assert samples.freedom.tolist() == [[4, 4], [1, 1]]
+    assert samples.own_variances == pytest.approx(np.array([[10, 1000], [0, 0]]))
+    # pooled: (4 * 10 + 1 * 0) / 5 = 8; then (4 * 8 + 4 * 10) / 8 = 9 and (4 * 8 + 0) / 5 = 6.4
+    assert samples.variances == pytest.approx(np.array([[9, 900], [6.4, 640]]))
+    assert samples.noise_variance == pytest.approx(np.array([[9 / 5, 180], [3.2, 320]]))
+
+
+def test_samples_of_the_first_rows_know_nothing_of_later_ones() -> None:
+    history = History(SPACE, OBJECTIVES)
+    history.extend([sampled(0, 1.0, [1, 3]), sampled(1, 2.0, [4, 4]), sampled(2, 1.0, [5, 7, 9], "confirm")])
+    assert history.samples(2).Y[:, 0].tolist() == [2, 4]
+    assert history.samples(2).replicates.tolist() == [2, 2]
+
+
+def test_noise_is_not_known_from_single_replicates() -> None:
+    history = History(SPACE, OBJECTIVES)
+    history.extend([sampled(0, 1.0, [1]), sampled(1, 2.0, [4])])
+    assert history.samples().noise_variance is None
+    assert History(SPACE, OBJECTIVES).samples().X.shape == (0, 1)
+
+
+def test_repeated_rows_of_single_replicates_tell_of_noise() -> None:
+    history = History(SPACE, OBJECTIVES)
+    history.extend([sampled(0, 1.0, [1], "earlier"), sampled(1, 1.0, [3], "earlier"), sampled(2, 2.0, [9])])
+    assert history.samples().variances[:, 0] == pytest.approx([2.0, 2.0])
+    assert history.samples().noise_variance[:, 0] == pytest.approx([1.0, 2.0])
+
+
+def test_configuration_that_failed_once_is_no_sample() -> None:
+    history = History(SPACE, OBJECTIVES)
+    failed = Suggestion(trial=1, configuration={"x": 1.0}, phase="confirm")
+    history.extend([sampled(0, 1.0, [1, 2]), Evaluation(suggestion=failed, state=State.FAILED)])
+    assert len(history.samples().X) == 0
