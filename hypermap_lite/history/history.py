@@ -135,6 +135,15 @@ class History:
             own_variances=own,
         )
 
+    def ends_of_samples(self) -> list[int]:
+        """Return after how many rows there were 1, 2, ... distinct configurations that had completed."""
+        ends, seen = [], set()
+        for i, row in enumerate(self._evaluations):
+            if row.is_completed and (key := key_of(row.configuration)) not in seen:
+                seen.add(key)
+                ends.append(i + 1)
+        return ends
+
     def feasibility(self) -> tuple[FloatArray, BoolArray]:
         """Return the codes of the completed and infeasible evaluations, shape (n, d), and which are feasible, (n,)."""
         known = [e for e in self._evaluations if e.state.is_feasible is not None]

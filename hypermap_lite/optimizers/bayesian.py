@@ -108,8 +108,7 @@ class BayesianOptimizer(Optimizer):
 
     def fitted(self) -> tuple[Posterior, FloatArray]:
         """Return the `posterior`, and the points it was fitted to, shape (n, d)."""
-        X = self.history.X()
-        return self._models.posterior(), X
+        return self._models.posterior(), self._models.observed()[0]
 
     def _suggest(self, trial: int) -> Suggestion | None:
         if trial < len(self._initial):
@@ -221,7 +220,7 @@ class BayesianOptimizer(Optimizer):
         )
 
     def _context(self, rng: Rng, feasibility: FeasibilityPosterior | None) -> AcquisitionContext:
-        X, Y = self.history.X(), self.history.Y()
+        X, Y = self._models.observed()
         reference_point = reference_point_of(self.history.objectives)
         normalization = Normalization.of_front(Y, reference_point)
         posterior = self._models.posterior()

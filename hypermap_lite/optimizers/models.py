@@ -54,11 +54,20 @@ class Models:
         self._posterior_of: tuple[int, Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
+    def observed(self) -> tuple[FloatArray, FloatArray]:
+        """Return what the surrogate is fitted to: the completed evaluations, or one row per distinct configuration."""
+        if not self._surrogate.noise_from_replicates:
+            return self._history.X(), self._history.Y()
+        samples = self._history.samples()
+        return samples.X, samples.Y
+
     def posterior(self) -> Posterior:
         """Return what is known of the objectives after the completed evaluations, of which there must be one."""
+        is_pooled = self._surrogate.noise_from_replicates
         X, Y = self._history.X(), self._history.Y()
-        if self._posterior_of is None or self._posterior_of[0] != len(X):
-            self._posterior_of = (len(X), self._fit(X, Y))
+        n = len(self._history) if is_pooled else len(X)
+        if self._posterior_of is None or self._posterior_of[0] != n:
+            self._posterior_of = (n, self._fit_samples() if is_pooled else self._fit(X, Y))
         return self._posterior_of[1]
 
     def evidence(self, n: int) -> Evidence | None:
@@ -109,11 +118,34 @@ class Models:
             self._warm_starts[n] = posterior.hyperparameters  # what a later call would work out again
         return posterior
 
-    def _fit_from(self, X: FloatArray, Y: FloatArray, start: Any) -> Posterior:
+    def _fit_samples(self) -> Posterior:
+        """Fit to one row per distinct configuration, with the noise of its mean.
+
+        The warm start of a milestone comes from the rows up to its last new configuration: later ones may repeat an
+        earlier configuration, which changes the mean and all variances, but not what a milestone was fitted to.
+        """
+        start, samples, ends = None, self._history.samples(), self._history.ends_of_samples()
+        growth = self._surrogate.warm_start_growth
+        for k in () if growth is None else milestones(len(samples.X), growth):
+            if k not in self._warm_starts:
+                first = self._history.samples(ends[k - 1])
+                self._warm_starts[k] = self._fit_from(first.X, first.Y, start, first.noise_variance).hyperparameters
+            start = self._warm_starts[k]
+        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance)
+
+    def _fit_from(
+        self, X: FloatArray, Y: FloatArray, start: Any, noise_variance: FloatArray | None = None
+    ) -> Posterior:
         rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
         space = self._history.space
         return self._surrogate.fit(
-            X, Y, is_ordered=space.is_ordered, rng=rng, start=start, permutations=space.permutations
+            X,
+            Y,
+            is_ordered=space.is_ordered,
+            rng=rng,
+            start=start,
+            permutations=space.permutations,
+            noise_variance=noise_variance,
         )
 
 

@@ -13,7 +13,7 @@ from hypermap_lite.typing import as_argument
 INDENT = " " * 12
 """Width of the column of headings."""
 
-UNSAID_IF_OFF = ("ends", "redraws", "unbounded", "uniform_share")
+UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
 

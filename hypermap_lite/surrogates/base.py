@@ -111,6 +111,11 @@ class Surrogate(Protocol):
         """By what factor the evaluations grow between the fits that later ones start from; None for no such starts."""
         ...
 
+    @property
+    def noise_from_replicates(self) -> bool:
+        """Whether `fit` wants one row per configuration, with the noise of its mean."""
+        ...
+
     def fit(
         self,
         X: FloatArray,
@@ -120,6 +125,7 @@ class Surrogate(Protocol):
         rng: Rng,
         start: Any = None,
         permutations: Permutations = NO_PERMUTATIONS,
+        noise_variance: FloatArray | None = None,
     ) -> Posterior:
         """Fit m objectives to n evaluations.
 
@@ -137,6 +143,9 @@ class Surrogate(Protocol):
             `hyperparameters` of an earlier posterior to start from.
         permutations
             The axes without an order whose codes are permutations.
+        noise_variance
+            Variance of the noise in each row of `Y`, in its units squared, shape (n, m), as far as it is known from
+            replicates; None where it must be learned. A surrogate may ignore it.
         """
         ...
 

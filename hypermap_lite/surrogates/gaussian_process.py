@@ -60,6 +60,10 @@ class GaussianProcess:
     lengthscale_width: float = 0.7
     """Standard deviation of that prior, > 0."""
 
+    noise_from_replicates: bool = False
+    """Whether the noise of each configuration is taken from its replicates, where there are several, and only a factor
+    near one is learned. Rows of one configuration are then one."""
+
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
             raise ScenarioError("$.noise_floor", f"the floor is {self.noise_floor}", allowed="a number > 0, at most 1")
@@ -84,6 +88,7 @@ class GaussianProcess:
         rng: Rng,
         start: Sequence[Hyperparameters] | None = None,
         permutations: Permutations = NO_PERMUTATIONS,
+        noise_variance: FloatArray | None = None,
     ) -> Posterior:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
         outputs = [Standardized.of(column) for column in Y.T]
@@ -94,14 +99,17 @@ class GaussianProcess:
             lengthscale_location=self.lengthscale_location,
             lengthscale_sigma=self.lengthscale_width,
         )
+        if noise_variance is not None and self.noise:
+            prior = prior.of_known_noise()
         processes = []
         for k, output in enumerate(outputs):
-            likelihood = MarginalLikelihood(X, output.values, is_ordered, prior, permutations)
+            known = None if noise_variance is None or not self.noise else output.noise(noise_variance[:, k])
+            likelihood = MarginalLikelihood(X, output.values, is_ordered, prior, permutations, known)
             starts = [] if start is None else [start[k]]
             if start is None or self.restart:
                 starts.append(prior.mode())
             best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
-            processes.append(Process.condition(X, output, best, is_ordered, permutations))
+            processes.append(Process.condition(X, output, best, is_ordered, permutations, known))
         return GaussianProcessPosterior(processes=tuple(processes))
 
 
@@ -143,8 +151,12 @@ class GaussianProcessPosterior:
             values = np.concatenate([p.output.values, p.joint(X_pending)[0]])
             X = np.vstack([p.X, X_pending])
             output = replace(p.output, values=values)
-            kernel = p.kernel
-            believed.append(Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations))
+            kernel, known = p.kernel, p.known_noise
+            if known is not None:
+                known = np.append(known, np.full(len(X_pending), np.median(known)))
+            believed.append(
+                Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations, known)
+            )
         return GaussianProcessPosterior(processes=tuple(believed))
 
     def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
@@ -19,7 +19,16 @@ logger = logging.getLogger(__name__)
 
 LENGTHSCALE_BOUNDS = (0.01, 100.0)
 OUTPUT_VARIANCE_BOUNDS = (0.01, 100.0)
+SMALLEST_KNOWN = 1e-6
+"""Smallest noise variance taken from replicates, in units of the standardized outputs."""
+
 NOISE_CEILING = 4.0
+KNOWN_NOISE_SIGMA = 0.3
+"""Width of the log-normal prior on the factor of known noise variances; its mode is one."""
+
+KNOWN_NOISE_BOUNDS = (0.25, 4.0)
+"""Bounds of that factor."""
+
 MAX_ITERATIONS = 100
 REJECTED = 1e25
 """Value of the objective function where the covariance cannot be factorized."""
@@ -71,6 +80,13 @@ class HyperPrior:
     noise_mu: float = -4.0
     noise_sigma: float = 2.0
     output_sigma: float = 2.0
+    noise_ceiling: float = NOISE_CEILING
+
+    def of_known_noise(self) -> HyperPrior:
+        """Return the prior where the noise is known but for a factor near one; see `KNOWN_NOISE_SIGMA`."""
+        low, high = KNOWN_NOISE_BOUNDS
+        sigma = KNOWN_NOISE_SIGMA
+        return replace(self, noise_mu=sigma**2, noise_sigma=sigma, noise_floor=low, noise_ceiling=high)
 
     @property
     def lengthscale_mu(self) -> float:
@@ -85,7 +101,7 @@ class HyperPrior:
 
     def bounds(self) -> FloatArray:
         """Return the bounds of the log hyperparameters, shape (d + 2, 2)."""
-        noise = (self.noise_floor, NOISE_CEILING if self.has_noise else self.noise_floor)
+        noise = (self.noise_floor, self.noise_ceiling if self.has_noise else self.noise_floor)
         return np.log(np.array([*[LENGTHSCALE_BOUNDS] * self.dimension, OUTPUT_VARIANCE_BOUNDS, noise]))
 
     def penalty(self, theta: FloatArray) -> tuple[float, FloatArray]:
@@ -115,6 +131,9 @@ class MarginalLikelihood:
     is_ordered: BoolArray
     prior: HyperPrior
     permutations: Permutations = field(default_factory=dict)
+    known_noise: FloatArray | None = None
+    """Noise variance of each output, in units of the standardized outputs, shape (n,); then the hyperparameter
+    ``noise_variance`` is a factor of it. None: that is the noise variance itself, the same for all."""
 
     def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the value and its gradient by the log hyperparameters, shape (d + 2,).
@@ -126,7 +145,7 @@ class MarginalLikelihood:
         kernel = MaternHammingKernel(h.lengthscales, self.is_ordered, self.permutations)
         C, H = kernel.parts(self.X, self.X)
         K = h.output_variance * C
-        K.flat[:: len(K) + 1] += h.noise_variance
+        K.flat[:: len(K) + 1] += h.noise_variance if self.known_noise is None else h.noise_variance * self.known_noise
         L = safe_cholesky(K)
         if L is None:
             return REJECTED, np.zeros_like(theta)
@@ -138,7 +157,8 @@ class MarginalLikelihood:
         gradient = np.empty_like(theta)
         gradient[:-2] = h.output_variance * kernel.pull_log_lengthscales(W, C, H, self.X)
         gradient[-2] = h.output_variance * np.vdot(W, C)
-        gradient[-1] = h.noise_variance * np.trace(W)
+        by_noise = np.trace(W) if self.known_noise is None else self.known_noise @ np.diag(W)
+        gradient[-1] = h.noise_variance * by_noise
         penalty, penalty_gradient = self.prior.penalty(theta)
         return float(value + penalty), gradient + penalty_gradient
 

@@ -10,7 +10,12 @@ import numpy as np
 from hypermap_lite.surrogates.base import NO_PERMUTATIONS, Permutations
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
-from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, constant_mean, inverse_from_cholesky
+from hypermap_lite.surrogates.marginal_likelihood import (
+    SMALLEST_KNOWN,
+    Hyperparameters,
+    constant_mean,
+    inverse_from_cholesky,
+)
 from hypermap_lite.typing import BoolArray, FloatArray
 
 NEXT_TO_ZERO = 1e-150
@@ -18,6 +23,9 @@ NEXT_TO_ZERO = 1e-150
 
 CONSTANT = 1e-12
 """Outputs whose relative standard deviation is below this are constant."""
+
+LARGEST_NOISE = 1e6
+"""Noise variance, in units of the standardized outputs, at which an output says nothing."""
 
 STD_FLOOR = 1e-9
 """Smallest predicted standard deviation, in units of the standardized outputs."""
@@ -45,6 +53,11 @@ class Standardized:
             return cls(np.zeros(len(y)), offset * magnitude, 1.0)
         return cls((small - offset) / spread, offset * magnitude, spread * magnitude)
 
+    def noise(self, variance: FloatArray) -> FloatArray:
+        """Return noise variances, shape (n,), in units of the standardized outputs, none below `SMALLEST_KNOWN`."""
+        with np.errstate(over="ignore"):
+            return np.clip((np.sqrt(variance) / self.scale) ** 2, SMALLEST_KNOWN, LARGEST_NOISE)
+
 
 @dataclass(frozen=True, slots=True)
 class Process:
@@ -61,6 +74,15 @@ class Process:
     alpha: FloatArray
     """K^-1 (y - mean), shape (n,)."""
 
+    known_noise: FloatArray | None = None
+    """As in `MarginalLikelihood`."""
+
+    @property
+    def noise_variances(self) -> FloatArray:
+        """Noise variance of each output, shape (n,)."""
+        relative = np.ones(len(self.X)) if self.known_noise is None else self.known_noise
+        return self.hyperparameters.noise_variance * relative
+
     @classmethod
     def condition(
         cls,
@@ -69,6 +91,7 @@ class Process:
         h: Hyperparameters,
         is_ordered: BoolArray,
         permutations: Permutations = NO_PERMUTATIONS,
+        known_noise: FloatArray | None = None,
     ) -> Process:
         """Condition a process with known hyperparameters on the data.
 
@@ -77,14 +100,14 @@ class Process:
         """
         kernel = MaternHammingKernel(h.lengthscales, is_ordered, permutations)
         K = h.output_variance * kernel(X, X)
-        K.flat[:: len(X) + 1] += h.noise_variance
+        K.flat[:: len(X) + 1] += h.noise_variance if known_noise is None else h.noise_variance * known_noise
         L = safe_cholesky(K)
         if L is None:
             L = np.eye(len(X)) * 1e6
         mean = constant_mean(inverse_from_cholesky(L), output.values)
         residual = output.values - mean
         alpha = solve_lower(L, solve_lower(L, residual), transposed=True)
-        return cls(X, output, h, kernel, mean, L, alpha)
+        return cls(X, output, h, kernel, mean, L, alpha, known_noise)
 
     def field_given(self, base: FloatArray, L: FloatArray, weights: FloatArray) -> ProcessField:
         """Return predictions mean + k(x, base) weights, with the variance left by the factor L."""

@@ -59,6 +59,8 @@ class RandomForest:
     where there are no evaluations [1]_."""
 
     warm_start_growth: ClassVar[float | None] = None
+    noise_from_replicates: ClassVar[bool] = False
+    """Never: rows that repeat a configuration are rows of their own, and all rows weigh the same."""
 
     def __post_init__(self) -> None:
         if self.number_of_trees < 2:
@@ -79,8 +81,9 @@ class RandomForest:
         rng: Rng,
         start: Any = None,
         permutations: Permutations = NO_PERMUTATIONS,
+        noise_variance: FloatArray | None = None,
     ) -> Posterior:
-        """Fit one forest per objective; see `Surrogate.fit`."""
+        """Fit one forest per objective; see `Surrogate.fit`. The noise variance has no part in it."""
         seed = int(rng.integers(2**31))
         forests = self.grow(X, Y, seed, permutations)
         return ForestPosterior(options=self, X=X, Y=Y, seed=seed, forests=forests, permutations=permutations)

@@ -93,3 +93,9 @@ def test_configuration_that_failed_once_is_no_sample() -> None:
     failed = Suggestion(trial=1, configuration={"x": 1.0}, phase="confirm")
     history.extend([sampled(0, 1.0, [1, 2]), Evaluation(suggestion=failed, state=State.FAILED)])
     assert len(history.samples().X) == 0
+
+
+def test_ends_of_samples_are_the_rows_that_bring_something_new() -> None:
+    history = History(SPACE, OBJECTIVES)
+    history.extend([sampled(0, 1.0, [1]), row(1, State.FAILED), sampled(2, 1.0, [3], "confirm"), sampled(3, 2.0, [9])])
+    assert history.ends_of_samples() == [1, 4]

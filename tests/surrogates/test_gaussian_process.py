@@ -202,3 +202,63 @@ def test_what_is_learned_of_one_order_is_believed_of_orders_alike() -> None:
     new = parameter.snap(rng.random(200))
     predicted = posterior.predict(new[:, None]).mean[:, 0]
     assert np.corrcoef(predicted, cost(new))[0, 1] > 0.95
+
+
+def test_exact_rows_are_gone_through_and_uncertain_ones_smoothed() -> None:
+    A = np.linspace(0, 1, 12)[:, None]
+    truth = np.sin(5 * A)
+    values = truth + np.where(np.arange(12)[:, None] % 2, 0.5 * np.cos(40 * A), 0.0)
+    variance = np.where(np.arange(12)[:, None] % 2, 0.25, 1e-8)
+    posterior = GaussianProcess(noise_from_replicates=True).fit(
+        A, values, is_ordered=np.ones(1, bool), rng=np.random.default_rng(0), noise_variance=variance
+    )
+    prediction = posterior.predict(A)
+    assert np.abs(prediction.mean - values)[::2].max() < 0.01
+    assert np.abs(prediction.mean - truth)[1::2].mean() < 0.5 * np.abs(values - truth)[1::2].mean()
+    assert prediction.std[1::2].min() > prediction.std[::2].max()
+
+
+def test_known_noise_is_in_the_units_of_the_outputs() -> None:
+    options = {"is_ordered": np.ones(X.shape[1], bool), "rng": np.random.default_rng(0)}
+    variance = np.random.default_rng(3).uniform(0.01, 0.1, (len(X), 1))
+    a = GaussianProcess().fit(X, Y[:, :1], noise_variance=variance, **options).predict(Z)
+    b = GaussianProcess().fit(X, 1000 * Y[:, :1] - 7, noise_variance=1e6 * variance, **options).predict(Z)
+    assert b.mean == pytest.approx(1000 * a.mean - 7, rel=1e-4, abs=1e-2)
+    assert b.std == pytest.approx(1000 * a.std, rel=1e-4)
+
+
+def test_known_noise_goes_into_fantasies_paths_and_believers() -> None:
+    variance = np.full((len(X), Y.shape[1]), 0.05)
+    variance[0] = 100.0
+    posterior = GaussianProcess().fit(
+        X, Y, is_ordered=np.ones(X.shape[1], bool), rng=np.random.default_rng(0), noise_variance=variance
+    )
+    process = posterior.processes[0]
+    assert process.noise_variances[0] / process.noise_variances[1] == pytest.approx(2000, rel=1e-6)
+    rng = np.random.default_rng(1)
+    draws = np.array([posterior.sample_path(rng, 512)(X[:3]).mean[0] for _ in range(200)])
+    expected = posterior.predict(X[:3])
+    assert draws.mean(axis=0) == pytest.approx(expected.mean, abs=5 * expected.std.max() / np.sqrt(200) + 0.05)
+    assert draws.std(axis=0) == pytest.approx(expected.std, rel=0.35)
+    believed = posterior.believe(Z[:2])
+    assert believed.processes[0].known_noise.shape == (len(X) + 2,)
+    assert believed.predict(Z[:2]).mean == pytest.approx(posterior.predict(Z[:2]).mean, abs=1e-6)
+
+
+@pytest.mark.parametrize("variance", [0.0, 1e300, 1e-300])
+def test_any_known_variance_gives_finite_predictions(variance: float) -> None:
+    posterior = GaussianProcess().fit(
+        X,
+        Y,
+        is_ordered=np.ones(X.shape[1], bool),
+        rng=np.random.default_rng(0),
+        noise_variance=np.full(Y.shape, variance),
+    )
+    assert np.isfinite(posterior.predict(Z).mean).all()
+
+
+def test_surrogate_without_noise_takes_no_notice_of_it() -> None:
+    options = {"is_ordered": np.ones(X.shape[1], bool), "rng": np.random.default_rng(0)}
+    model = GaussianProcess(noise=False)
+    with_it = model.fit(X, Y, noise_variance=np.ones(Y.shape), **options).predict(Z)
+    assert np.array_equal(with_it.mean, model.fit(X, Y, **options).predict(Z).mean)

@@ -93,3 +93,38 @@ def test_data_that_cannot_be_fitted_leave_the_mode_of_the_prior(caplog: pytest.L
 def test_inverse_from_cholesky() -> None:
     K = np.array([[2.0, 0.5], [0.5, 1.0]])
     assert inverse_from_cholesky(np.linalg.cholesky(K)) == pytest.approx(np.linalg.inv(K))
+
+
+def known(n: int = 25) -> MarginalLikelihood:
+    """Return the example with noise that is known but for a factor."""
+    plain, noise = example(n), np.random.default_rng(1).uniform(0.01, 0.5, n)
+    prior = HyperPrior(3).of_known_noise()
+    return MarginalLikelihood(plain.X, plain.y, plain.is_ordered, prior, known_noise=noise)
+
+
+def test_gradient_with_known_noise_agrees_with_finite_differences() -> None:
+    likelihood = known()
+    for seed in range(3):
+        theta = likelihood.prior.mode().to_log() + 0.5 * np.random.default_rng(seed).standard_normal(5)
+        numeric = approx_fprime(theta, lambda t: likelihood(t)[0], 1e-7)
+        assert likelihood(theta)[1] == pytest.approx(numeric, rel=1e-4, abs=1e-4)
+
+
+def test_value_with_known_noise_is_scikit_learns() -> None:
+    likelihood, h = known(), Hyperparameters(np.array([0.4, 0.9, 2.0]), 1.7, 1.2)
+    kernel = ConstantKernel(1.7) * Matern(h.lengthscales, nu=2.5)
+    noise = 1.2 * likelihood.known_noise
+    mean = constant_mean(np.linalg.inv(kernel(likelihood.X) + np.diag(noise)), likelihood.y)
+    oracle = GaussianProcessRegressor(kernel, alpha=noise, optimizer=None).fit(likelihood.X, likelihood.y - mean)
+    penalty = likelihood.prior.penalty(h.to_log())[0]
+    assert likelihood(h.to_log())[0] == pytest.approx(-oracle.log_marginal_likelihood_value_ + penalty, rel=1e-9)
+
+
+def test_known_noise_is_believed_unless_the_data_contradict_it() -> None:
+    prior = HyperPrior(3).of_known_noise()
+    assert prior.mode().noise_variance == pytest.approx(1.0)
+    low, high = np.exp(prior.bounds()[-1])
+    found = fit_hyperparameters(known(), [prior.mode()])
+    assert low < found.noise_variance < high
+    equal_noise = MarginalLikelihood(known().X, example().y, np.ones(3, bool), HyperPrior(3), known_noise=np.ones(25))
+    assert equal_noise(prior.mode().to_log())[0] == pytest.approx(example()(prior.mode().to_log())[0], rel=1e-12)

@@ -1,0 +1,84 @@
+"""Bayesian optimization that takes the noise from replicates."""
+
+import numpy as np
+import pytest
+
+from hypermap_lite.assembly import build_history, build_optimizer
+from hypermap_lite.evaluation.outcome import Evaluation, State
+from hypermap_lite.scenario.loader import load_scenario
+from tests.optimizers.runs import configurations, resumed, scenario_of, two_objectives
+
+POOLED = {"surrogate": {"noise_from_replicates": True}}
+
+
+def sampled(suggestion, n=3):
+    """Return the evaluation of n noisy replicates, with noise that grows along one axis."""
+    rng = np.random.default_rng([suggestion.trial, n])
+    scale = 0.02 + 0.2 * suggestion.configuration["a"]
+    values = {
+        name: value + scale * rng.standard_normal(n) for name, value in two_objectives(suggestion.configuration).items()
+    }
+    return Evaluation(
+        suggestion=suggestion,
+        state=State.COMPLETED,
+        values={name: float(sample.mean()) for name, sample in values.items()},
+        standard_errors={
+            name: float(sample.std(ddof=1) / np.sqrt(n)) if n > 1 else np.nan for name, sample in values.items()
+        },
+        replicates=n,
+    )
+
+
+def run(scenario, n, replicates=3):
+    optimizer = build_optimizer(load_scenario(scenario))
+    while len(optimizer.history) < n:
+        optimizer.tell([sampled(s, replicates) for s in optimizer.ask()])
+    return optimizer
+
+
+def test_posterior_knows_noise_and_number_of_replicates_of_each_configuration():
+    optimizer = run(scenario_of(budget={"evaluations": 16, "confirm_front": 4}, **POOLED), 16)
+    posterior, X = optimizer.fitted()
+    samples = optimizer.history.samples()
+    assert X.tolist() == samples.X.tolist()
+    assert len(X) < 16
+    process = posterior.processes[0]
+    expected = samples.noise_variance[:, 0] * process.hyperparameters.noise_variance / process.output.scale**2
+    assert process.noise_variances == pytest.approx(expected)
+    # What is evaluated most is known best.
+    assert samples.replicates.max() > 3
+
+
+@pytest.mark.parametrize("surrogate", [{}, {"type": "random_forest"}])
+def test_other_surrogates_have_a_row_per_evaluation(surrogate):
+    scenario = scenario_of(budget={"evaluations": 14, "confirm_front": 4}, surrogate=surrogate)
+    assert len(run(scenario, 14).fitted()[1]) == 14
+
+
+@pytest.mark.parametrize("at", [9, 13, 16, 18])
+def test_resumed_optimizer_goes_on_as_the_uninterrupted_one(at):
+    scenario = scenario_of(budget={"evaluations": 14, "confirm_front": 4}, **POOLED)
+    first = run(scenario, 14)
+    longer = scenario_of(budget={"evaluations": 22, "confirm_front": 2}, **POOLED)
+    whole = resumed(longer, list(first.history))
+    while len(whole.history) < 22:
+        whole.tell([sampled(s) for s in whole.ask()])
+    (suggestion,) = resumed(longer if at >= 14 else scenario, list(whole.history)[:at]).ask()
+    assert suggestion.configuration == whole.history[at].configuration
+
+
+def test_single_replicates_are_modelled_as_without_the_option():
+    with_it, without = (run(scenario_of(**changes), 12, replicates=1) for changes in (POOLED, {}))
+    assert configurations(with_it) == configurations(without)
+
+
+def test_confirmation_that_failed_does_not_stop_the_search():
+    scenario = scenario_of(budget={"evaluations": 14, "confirm_front": 2}, **POOLED)
+    optimizer = run(scenario, 12)
+    (suggestion,) = optimizer.ask()
+    optimizer.tell([Evaluation(suggestion=suggestion, state=State.FAILED, error="broken")])
+    (following,) = optimizer.ask()
+    assert following.configuration != suggestion.configuration
+    history = build_history(load_scenario(scenario))
+    history.extend(optimizer.history)
+    assert len(history.samples().X) == 11
