@@ -3,7 +3,7 @@
     python benchmarks/replicate_noise.py --seeds 20
 
 Two functions of four parameters: a bowl in a plateau of failure, whose results scatter most at the cliff and hardly on
-the plateau, and a smooth one whose noise grows by a factor of ten along an axis. Of half of the configurations the place
+the plateau, and a smooth one whose noise grows tenfold along an axis. Of half of the configurations the place
 is random, the others lie near the optimum. Models see the means of r replicates; they are asked for the noise-free
 function at the data, and at 400 other points, half of them near the optimum.
 """
