@@ -209,6 +209,7 @@ def run_scenario(
             plan=assembly.build_plan(scenario),
             seed=scenario.seed,
             replicates=spec.replicates,
+            racing=spec.racing,
             max_consecutive_failures=spec.max_consecutive_failures,
             should_stop=should_stop,
             observer=observer or RunObserver(),

@@ -20,11 +20,12 @@ from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, FrontTracker, RunObserver, describe
-from hypermap_lite.evaluation.outcome import EARLIER, Evaluation, State, Suggestion
+from hypermap_lite.evaluation.outcome import EARLIER, Evaluation, Replicate, State, Suggestion
+from hypermap_lite.evaluation.racing import Race
 from hypermap_lite.evaluation.seeds import replicate_seed
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.optimizers.base import Optimizer
-from hypermap_lite.scenario.model import BudgetSpec
+from hypermap_lite.scenario.model import BudgetSpec, RacingSpec
 from hypermap_lite.typing import Configuration
 
 logger = logging.getLogger(__name__)
@@ -70,6 +71,9 @@ class Runner:
     """None: batches of the budget's size."""
 
     replicates: int = 1
+    racing: RacingSpec | None = None
+    """When the replicates of a configuration are stopped; None: never."""
+
     max_consecutive_failures: int = 5
     observer: RunObserver = field(default_factory=RunObserver)
     should_stop: Callable[[], bool] = lambda: False
@@ -82,6 +86,9 @@ class Runner:
     _clock: Clock = field(init=False)
     _earlier_ms: int = field(init=False, default=0)
     _front: FrontTracker = field(init=False)
+    _race: Race = field(init=False)
+    """Of the batch that is being evaluated."""
+
     _failures: int = field(init=False, default=0)
     """Configurations without a usable result in a row, up to now."""
 
@@ -185,15 +192,15 @@ class Runner:
 
     def _evaluate(self, suggestions: Sequence[Suggestion]) -> None:
         """Make the calls of a batch that are missing; tell the optimizer if none is missing any more."""
-        missing = list(self._missing(suggestions))
-        self.observer.on_suggestions([s.trial for s in suggestions], len(missing))
+        rows, objectives = list(self.optimizer.history), self.folder.objectives
+        self._race = Race.against(rows, objectives, self.racing, self.replicates)
+        n_calls = sum(self.replicates - len(self._calls_of(s)) for s in suggestions if self._is_open(s))
+        self.observer.on_suggestions([s.trial for s in suggestions], n_calls)
         self._record_finished(suggestions)
-        requests = (request for request in missing if not self.should_stop())
-        with closing(self.executor.run(self.evaluator, requests)) as finished:
-            for call in finished:
-                self.folder.append_replicate(call)
-                self.observer.on_replicate(call)
-                self._record_finished(suggestions)
+        while missing := list(self._missing(suggestions)):
+            self._make_calls(missing, suggestions)
+            if any((request.trial, request.replicate) not in self.folder.replicates for request in missing):
+                break
         self._check_failures()
         rows = self.folder.evaluations[suggestions[0].trial : suggestions[-1].trial + 1]
         self.folder.write_pareto()
@@ -202,11 +209,28 @@ class Runner:
         elif not self.should_stop():  # asking again would go on for ever
             raise RuntimeError(f"trial {suggestions[0].trial + len(rows)} was evaluated, but its result did not arrive")
 
+    def _make_calls(self, missing: Sequence[EvaluationRequest], suggestions: Sequence[Suggestion]) -> None:
+        requests = (request for request in missing if not self.should_stop())
+        with closing(self.executor.run(self.evaluator, requests)) as finished:
+            for call in finished:
+                self.folder.append_replicate(call)
+                self.observer.on_replicate(call)
+                self._record_finished(suggestions)
+
+    def _is_open(self, suggestion: Suggestion) -> bool:
+        return suggestion.trial >= len(self.folder.evaluations)
+
+    def _calls_of(self, suggestion: Suggestion) -> list[Replicate]:
+        """Return the calls of a trial that are done."""
+        calls = (self.folder.replicates.get((suggestion.trial, r)) for r in range(self.replicates))
+        return [call for call in calls if call is not None]
+
     def _missing(self, suggestions: Sequence[Suggestion]) -> Iterator[EvaluationRequest]:
-        for suggestion in suggestions:
+        """Yield the calls that are known to be needed and not done; in a race more may follow from their results."""
+        for suggestion in filter(self._is_open, suggestions):
             trial = suggestion.trial
-            for r in range(self.replicates):
-                if trial >= len(self.folder.evaluations) and (trial, r) not in self.folder.replicates:
+            for r in range(self._race.required(suggestion, self._calls_of(suggestion))):
+                if (trial, r) not in self.folder.replicates:
                     yield EvaluationRequest(
                         trial=trial,
                         replicate=r,
@@ -218,11 +242,12 @@ class Runner:
     def _record_finished(self, suggestions: Sequence[Suggestion]) -> None:
         """Write the rows of the configurations that are done, in order, up to the first that is not."""
         for suggestion in suggestions[len(self.folder.evaluations) - suggestions[0].trial :]:
-            calls = [self.folder.replicates.get((suggestion.trial, r)) for r in range(self.replicates)]
-            done = [call for call in calls if call is not None]
-            if len(done) < len(calls):
+            done = self._calls_of(suggestion)
+            needed = self._race.required(suggestion, done)
+            counting = [call for call in done if call.replicate < needed]
+            if len(counting) < needed:
                 return
-            self._record(summarize(suggestion, done, self._clock.ms))
+            self._record(summarize(suggestion, counting, self._clock.ms))
 
     def _record(self, evaluation: Evaluation) -> None:
         self.folder.append_evaluation(evaluation)

@@ -19,11 +19,12 @@ from hypermap_lite.scenario.model import (
     ObjectivePriors,
     OutputSpec,
     ParameterSpec,
+    RacingSpec,
     Scenario,
 )
 from hypermap_lite.scenario.sources import Layer
 
-EVALUATOR_KEYS = ("replicates", "timeout_seconds", "workers", "max_consecutive_failures")
+EVALUATOR_KEYS = ("replicates", "racing", "timeout_seconds", "workers", "max_consecutive_failures")
 """Keys of the section that are about the calls, not about the evaluator."""
 
 
@@ -124,6 +125,8 @@ def _evaluator(section: Mapping[str, Any]) -> EvaluatorSpec:
     own = {key: value for key, value in section.items() if key not in EVALUATOR_KEYS}
     component = None if section["type"] == "none" else _component(own, "$.evaluator")
     keys = {key: section[key] for key in EVALUATOR_KEYS}
+    if keys["racing"] is not None:
+        keys["racing"] = RacingSpec(**keys["racing"])
     return EvaluatorSpec(component=component, batch=section.get("batch", False), **keys)
 
 

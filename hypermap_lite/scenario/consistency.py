@@ -174,6 +174,14 @@ def _check_budget(document: Mapping[str, Any]) -> None:
 
 
 def _check_client(evaluator: Mapping[str, Any]) -> None:
+    racing, replicates = evaluator["racing"], evaluator["replicates"]
+    if racing is not None and racing["minimum"] >= replicates:
+        raise ScenarioError(
+            "$.evaluator.racing.minimum",
+            f"replicates is {replicates}, so that none is left to save after {racing['minimum']}",
+            allowed=f"2 to {replicates - 1}" if replicates > 2 else "no racing with fewer than 3 replicates",
+            hint="Raise evaluator.replicates, or drop racing.",
+        )
     if evaluator["type"] == "client_server" and evaluator["replicates"] > 1:
         raise ScenarioError(
             "$.evaluator.replicates",

@@ -213,9 +213,12 @@ def _workers(scenario: Scenario) -> Iterator[tuple[str, str]]:
     if scenario.evaluator.workers > 1 and (why := _why_workers_are_idle(scenario)):
         yield "$.evaluator.workers", f"they are not used: {why}."
         return
-    calls = scenario.budget.batch_size * scenario.evaluator.replicates
+    racing, at_once, what = scenario.evaluator.racing, scenario.evaluator.replicates, "replicates"
+    if racing is not None:
+        at_once, what = max(racing.minimum, racing.step), "the replicates between two looks of the race"
+    calls = scenario.budget.batch_size * at_once
     if scenario.evaluator.workers > calls:
-        text = f"only {calls} calls can run at once (batch_size x replicates); the other workers never get one."
+        text = f"only {calls} calls can run at once (batch_size x {what}); the other workers never get one."
         yield "$.evaluator.workers", text
 
 

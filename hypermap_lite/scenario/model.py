@@ -112,6 +112,20 @@ class AcquisitionSpec:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RacingSpec:
+    """When the replicates of a configuration are stopped."""
+
+    alpha: float = 0.05
+    """Probability at most that a configuration is stopped that no evaluated one dominates, in (0, 1)."""
+
+    minimum: int = 3
+    """Replicates before the first look, >= 2."""
+
+    step: int = 2
+    """Replicates between two looks, >= 1."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluatorSpec:
     """Section ``evaluator``: the black box and how often and how long it is called."""
 
@@ -123,6 +137,9 @@ class EvaluatorSpec:
 
     replicates: int = 1
     """Calls per configuration, each with its own seed; objectives are averaged."""
+
+    racing: RacingSpec | None = None
+    """When fewer calls are made of a configuration that is clearly dominated; None: never."""
 
     timeout_seconds: float | None = None
     """A call that runs longer is killed with everything it started [s]."""

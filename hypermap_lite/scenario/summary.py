@@ -204,7 +204,11 @@ def _evaluator(scenario: Scenario) -> str:
     what = " ".join(filter(None, [evaluator.component.type, _shorten(str(target), 60)]))
     if evaluator.batch or evaluator.is_client:
         return f"{what}; calls: one per batch, {limit}"
-    return f"{what}; calls: {evaluator.replicates} per configuration, {evaluator.workers} at a time, {limit}"
+    racing = evaluator.racing
+    calls = str(evaluator.replicates)
+    if racing is not None:
+        calls = f"{racing.minimum} to {calls} by racing (alpha={racing.alpha:g})"
+    return f"{what}; calls: {calls} per configuration, {evaluator.workers} at a time, {limit}"
 
 
 def _component(spec: ComponentSpec) -> str:

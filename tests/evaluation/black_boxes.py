@@ -21,6 +21,11 @@ def sphere(configuration, seed):
     return {"f": x**2 + seed * 1e-12, "g": (x - 1) ** 2, "pid": os.getpid()}
 
 
+def scattering(configuration, seed):
+    x, noise = configuration["x"], (seed % 1000) / 1e6
+    return {"f": x**2 + noise, "g": (x - 0.5) ** 2 + noise}
+
+
 def sum_and_difference(configuration):
     return {"f": configuration["x"] + 1, "g": configuration["x"] - 1}
 

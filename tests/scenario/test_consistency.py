@@ -71,6 +71,19 @@ def test_an_objective_may_be_called_like_a_placeholder() -> None:
     check_consistency(complete(objectives=[{"name": "python"}]))
 
 
+@pytest.mark.parametrize(
+    ("evaluator", "allowed"),
+    [
+        pytest.param({"replicates": 3, "racing": {}}, "2 to 2", id="no replicate after the first look"),
+        pytest.param({"racing": {}}, "no racing with fewer than 3 replicates", id="one replicate"),
+    ],
+)
+def test_a_race_needs_replicates_to_save(evaluator: dict[str, Any], allowed: str) -> None:
+    with pytest.raises(ScenarioError, match=r"\$.evaluator.racing.minimum: replicates is \d, so that none") as info:
+        check_consistency(complete(evaluator=evaluator))
+    assert info.value.allowed == allowed
+
+
 def test_not_all_evaluations_can_repeat_others() -> None:
     budget = {"evaluations": 10, "confirm_front": 10}
     problem = r"\$.budget.confirm_front: 10 of 10 evaluations cannot repeat others"

@@ -184,6 +184,12 @@ def test_a_confirmation_with_room_is_fine() -> None:
     assert warnings(budget={"evaluations": 30, "confirm_front": 4}) == []
 
 
+def test_workers_beyond_the_calls_between_two_looks_are_named() -> None:
+    evaluator = {"type": "python", "function": "m:f", "replicates": 7, "racing": {}, "workers": 4}
+    (warning,) = warnings(evaluator=evaluator)
+    assert "only 3 calls can run at once (batch_size x the replicates between two looks of the race)" in warning
+
+
 def test_workers_that_never_get_a_call_are_named() -> None:
     (warning,) = warnings(evaluator={"workers": 4, "replicates": 3})
     assert "only 3 calls" in warning

@@ -111,6 +111,11 @@ def test_the_evaluator_line_says_what_is_called_and_how_often() -> None:
     assert "driven by ask and tell" in page()
 
 
+def test_the_evaluator_line_says_when_replicates_race() -> None:
+    evaluator = {"type": "python", "function": "m:f", "replicates": 7, "racing": {"alpha": 0.1}}
+    assert "calls: 3 to 7 by racing (alpha=0.1) per configuration, 1 at a time" in page(evaluator=evaluator)
+
+
 def test_the_budget_line_says_batches_and_minutes() -> None:
     assert "30 evaluations, 3 at a time, at most 2.5 min" in page(
         budget={"evaluations": 30, "batch_size": 3, "minutes": 2.5}
