@@ -106,7 +106,7 @@ class ProbitProcess:
     ) -> ProbitPosterior:
         """Fit n evaluations; see `FeasibilityModel.fit`."""
         labels = np.where(is_feasible, 1.0, -1.0)
-        theta = self._mode(X.shape[1])
+        theta = self._mode(HyperPrior.over(is_ordered, permutations or {}))
         prior = MaternHammingKernel(np.exp(theta[:-1]), is_ordered, permutations or {})
         if is_feasible.any() and not is_feasible.all():
             rows = telling_rows(X, is_feasible, prior, MAX_ROWS_OF_FIT)
@@ -120,9 +120,9 @@ class ProbitProcess:
             X=X[rows], kernel=kernel, variance=variance, constant_variance=self.constant_variance, laplace=laplace
         )
 
-    def _mode(self, dimension: int) -> FloatArray:
+    def _mode(self, prior: HyperPrior) -> FloatArray:
         """Return the log hyperparameters before any data, shape (d + 1,): lengthscales, variance."""
-        return np.log([*HyperPrior(dimension).mode().lengthscales, self.variance])
+        return np.log([*prior.mode().lengthscales, self.variance])
 
     def _fit(self, start: FloatArray, evidence: Evidence) -> FloatArray:
         from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
@@ -156,11 +156,11 @@ class Evidence:
 
     def _penalty(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the negative log prior: that of all lengthscales here, and log variance normal with width 1."""
-        prior = HyperPrior(len(theta) - 1)
-        z = (theta[:-1] - prior.lengthscale_mu) / prior.lengthscale_sigma
+        mu, sigma = HyperPrior.over(self.kernel.is_ordered, self.kernel.permutations).lengthscale_priors()
+        z = (theta[:-1] - mu) / sigma
         excess = theta[-1] - math.log(self.model.variance)
         value = 0.5 * z @ z + theta[:-1].sum() + 0.5 * excess**2
-        return float(value), np.append(z / prior.lengthscale_sigma + 1.0, excess)
+        return float(value), np.append(z / sigma + 1.0, excess)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -92,8 +92,9 @@ class GaussianProcess:
     ) -> Posterior:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
         outputs = [Standardized.of(column) for column in Y.T]
-        prior = HyperPrior(
-            X.shape[1],
+        prior = HyperPrior.over(
+            is_ordered,
+            permutations,
             has_noise=self.noise,
             noise_floor=self.noise_floor,
             lengthscale_location=self.lengthscale_location,

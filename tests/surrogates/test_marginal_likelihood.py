@@ -8,6 +8,9 @@ from scipy.optimize import approx_fprime
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
+from hypermap_lite.space import PermutationParameter
+from hypermap_lite.surrogates.gaussian_process import GaussianProcess
+from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import (
     Hyperparameters,
     HyperPrior,
@@ -67,6 +70,51 @@ def test_lengthscale_prior_has_the_published_parameters() -> None:
     prior = HyperPrior(9)
     assert prior.lengthscale_mu == pytest.approx(math.sqrt(2) + math.log(3))
     assert prior.mode().lengthscales == pytest.approx(np.full(9, 3 * math.exp(math.sqrt(2) - 3)))
+
+
+@pytest.mark.parametrize("n_axes", [1, 3, 20])
+def test_points_that_differ_in_all_categories_keep_their_correlation_however_many_there_are(n_axes: int) -> None:
+    is_ordered = np.zeros(n_axes, dtype=bool)
+    mode = HyperPrior.over(is_ordered, {}).mode()
+    X = np.array([np.full(n_axes, 0.25), np.full(n_axes, 0.75)])
+    assert MaternHammingKernel(mode.lengthscales, is_ordered)(X, X)[0, 1] == pytest.approx(math.exp(-2))
+
+
+def test_the_mode_of_categorical_lengthscales_is_where_their_prior_is_densest() -> None:
+    prior = HyperPrior.over(np.array([True, False, False]), {})
+    mode = prior.mode().to_log()
+    assert np.exp(mode[1:3]) == pytest.approx([1, 1])
+    assert prior.penalty(mode)[1][:3] == pytest.approx([0, 0, 0], abs=1e-12)
+
+
+def test_categories_leave_the_prior_of_other_axes_as_it_is() -> None:
+    permutation = PermutationParameter(name="order", size=4)
+    prior = HyperPrior.over(np.array([True, False, False]), {2: permutation})
+    mu, sigma = prior.lengthscale_priors()
+    assert mu[[0, 2]].tolist() == [HyperPrior(3).lengthscale_mu] * 2
+    assert sigma[[0, 2]].tolist() == [HyperPrior(3).lengthscale_sigma] * 2
+
+
+def test_a_space_without_categories_has_the_prior_it_always_had() -> None:
+    theta = np.linspace(-2, 1, 6)
+    with_axes, plain = HyperPrior.over(np.ones(4, dtype=bool), {}), HyperPrior(4)
+    assert with_axes == plain
+    mu = np.array([*[plain.lengthscale_mu] * 4, 0.0, plain.noise_mu])
+    sigma = np.array([*[plain.lengthscale_sigma] * 4, plain.output_sigma, plain.noise_sigma])
+    z, jacobian = (theta - mu) / sigma, np.array([1.0, 1.0, 1.0, 1.0, 0.0, 1.0])
+    value, gradient = with_axes.penalty(theta)
+    assert value == float((0.5 * z * z + jacobian * theta).sum())
+    assert np.array_equal(gradient, z / sigma + jacobian)
+
+
+def test_twenty_categorical_axes_are_learnt_from_sixty_evaluations() -> None:
+    rng = np.random.default_rng(0)
+    levels = rng.integers(3, size=(160, 20))
+    worth = rng.standard_normal((20, 3))
+    X, y = (levels + 0.5) / 3, worth[np.arange(20), levels].sum(axis=1)
+    posterior = GaussianProcess().fit(X[:60], y[:60, None], is_ordered=np.zeros(20, dtype=bool), rng=rng)
+    correlation = np.corrcoef(posterior.predict(X[60:]).mean[:, 0], y[60:])[0, 1]
+    assert correlation > 0.7
 
 
 def test_the_fit_finds_the_axis_that_does_not_matter_and_the_noise() -> None:
