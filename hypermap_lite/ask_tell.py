@@ -71,7 +71,7 @@ class Optimizer:
 
     @property
     def history(self) -> History:
-        """All trials told so far, up to the first that is pending."""
+        """All trials told so far, up to the first that is pending; all, as told, with ``budget.asynchronous``."""
         return self._optimizer.history
 
     @property

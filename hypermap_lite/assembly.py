@@ -172,8 +172,9 @@ def _joint_factor(
 
 
 def build_history(scenario: Scenario) -> History:
-    """Make the empty history of a run."""
-    return History(build_space(scenario), scenario.objectives)
+    """Make the empty history of a run; without batches a model takes results in any order, a search without one not."""
+    in_order = not scenario.budget.asynchronous or scenario.optimizer.type in SEARCHES
+    return History(build_space(scenario), scenario.objectives, in_order=in_order)
 
 
 def build_optimizer(scenario: Scenario, history: History | None = None) -> Optimizer:

@@ -15,6 +15,7 @@ import numpy as np
 
 from hypermap_lite import assembly
 from hypermap_lite.errors import NoValidEvaluationError, ScenarioError
+from hypermap_lite.evaluation.asynchronous import AsynchronousRunner
 from hypermap_lite.evaluation.channel import Channel, standard_channel
 from hypermap_lite.evaluation.client_server import ClientExecutor, ClientServer
 from hypermap_lite.evaluation.earlier import earlier_evaluations
@@ -200,7 +201,7 @@ def run_scenario(
         executor = choose_executor(evaluator, spec, channel, is_given=function is not None)
         if on_built is not None:
             on_built()
-        runner = Runner(
+        runner = (AsynchronousRunner if scenario.budget.asynchronous else Runner)(
             optimizer=optimizer,
             evaluator=evaluator,
             executor=executor,

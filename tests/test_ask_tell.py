@@ -63,3 +63,23 @@ def test_an_unknown_trial_is_refused() -> None:
 
 def test_nothing_told_means_an_empty_front() -> None:
     assert Optimizer(scenario_of()).pareto_front() == []
+
+
+def test_an_asynchronous_optimizer_learns_from_a_result_before_an_earlier_one_is_there() -> None:
+    scenario = {
+        "input_parameters": {"x": {"parameter_type": "real", "values": [0, 4]}},
+        "objectives": [{"name": "loss"}],
+        "design_of_experiment": {"number_of_samples": 4},
+        "budget": {"asynchronous": True},
+    }
+    optimizer = Optimizer(scenario)
+    first, *others = optimizer.ask(4)
+    for suggestion in others:
+        optimizer.tell(suggestion, (suggestion.configuration["x"] - 1) ** 2)
+    (by_model,) = optimizer.ask()
+    assert by_model.trial == 4
+    assert by_model.phase == "model"
+    assert [e.trial for e in optimizer.history] == [1, 2, 3]
+    assert [s.trial for s in optimizer.pending] == [0, 4]
+    optimizer.tell(first, 1.0)
+    assert [e.trial for e in optimizer.history] == [1, 2, 3, 0]

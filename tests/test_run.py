@@ -118,6 +118,18 @@ def test_importable_function_runs_in_workers_with_the_same_rows(tmp_path):
     assert rows(tmp_path / "here") == rows(tmp_path / "there")
 
 
+def test_asynchronous_workers_evaluate_the_whole_budget(tmp_path):
+    options = {"workers": 2, "overrides": ["budget.asynchronous=true"], "output_directory": tmp_path}
+    scenario = {key: value for key, value in SCENARIO.items() if key != "optimizer"}
+    result = optimize(scenario, sphere, **options)
+    assert [e.trial for e in result.evaluations] == list(range(len(result.evaluations)))
+    assert len(result.evaluations) == 6
+    again = optimize(scenario, sphere, **options)
+    assert [(e.configuration, e.values) for e in again.evaluations] == [
+        (e.configuration, e.values) for e in result.evaluations
+    ]
+
+
 @pytest.mark.parametrize("options", [{"workers": 2}, {"overrides": ["evaluator.timeout_seconds=9"]}])
 def test_local_function_in_workers_is_refused_before_anything_is_written(tmp_path, options):
     with pytest.raises(UsageError, match="cannot be sent to a worker process"):

@@ -127,13 +127,11 @@ class Runner:
         self.folder.write_pareto()
 
     def _restore(self) -> None:
-        """Tell the optimizer the batches that are complete on disk."""
+        """Go on from what is on disk."""
         rows = self.folder.evaluations
         self._n_earlier = sum(row.suggestion.phase == EARLIER for row in rows)
         self._plan = (self.plan or BatchPlan(size=self.budget.batch_size)).after(self._n_earlier)
-        is_finished = len(rows) >= self.budget.evaluations
-        n_complete = self._n_earlier + self._plan.n_in_whole_batches(len(rows) - self._n_earlier)
-        self.optimizer.history.extend(rows if is_finished else rows[:n_complete])
+        self._tell_rows()
         self._clock = Clock(max((row.timestamp for row in rows), default=0))
         self._earlier_ms = max((row.timestamp for row in rows[: self._n_earlier]), default=0)
         self._front = FrontTracker(self.folder.objectives)
@@ -145,6 +143,13 @@ class Runner:
             n_calls = len(self.folder.replicates)
             logger.info("going on with %s: %d evaluations, %d calls are done", self.folder.path, len(rows), n_calls)
         self.observer.on_start(done=len(rows), total=self.budget.evaluations)
+
+    def _tell_rows(self) -> None:
+        """Tell the optimizer the batches that are complete on disk."""
+        rows = self.folder.evaluations
+        is_finished = len(rows) >= self.budget.evaluations
+        n_complete = self._n_earlier + self._plan.n_in_whole_batches(len(rows) - self._n_earlier)
+        self.optimizer.history.extend(rows if is_finished else rows[:n_complete])
 
     def _loop(self) -> StopReason:
         while (reason := self._reason_to_stop()) is None:
@@ -160,11 +165,16 @@ class Runner:
     def _reason_to_stop(self) -> StopReason | None:
         if self.should_stop():
             return StopReason.INTERRUPTED
-        if len(self.optimizer.history) >= self.budget.evaluations:
+        if self._n_begun >= self.budget.evaluations:
             return StopReason.BUDGET
         if self.budget.minutes is not None and self._run_ms >= 60_000 * self.budget.minutes:
             return StopReason.TIME
         return None
+
+    @property
+    def _n_begun(self) -> int:
+        """Configurations that count towards the budget so far."""
+        return len(self.optimizer.history)
 
     @property
     def _run_ms(self) -> int:
@@ -173,6 +183,12 @@ class Runner:
 
     def _as_recorded(self, suggestion: Suggestion) -> Suggestion:
         """Return the suggestion with the configuration that was evaluated before the stop, if it was another."""
+        adopted = self._with_recorded_configuration(suggestion)
+        if adopted is not suggestion:
+            self.optimizer.adopt(adopted)
+        return adopted
+
+    def _with_recorded_configuration(self, suggestion: Suggestion) -> Suggestion:
         recorded = self._recorded_configuration(suggestion.trial)
         if recorded is None or recorded == suggestion.configuration:
             return suggestion
@@ -180,9 +196,7 @@ class Runner:
             "trial %d would now be %s, but %s has been evaluated and is kept (was the code or a library changed?)",
             *(suggestion.trial, suggestion.configuration, recorded),
         )
-        adopted = replace(suggestion, configuration=recorded)
-        self.optimizer.adopt(adopted)
-        return adopted
+        return replace(suggestion, configuration=recorded)
 
     def _recorded_configuration(self, trial: int) -> Configuration | None:
         if trial < len(self.folder.evaluations):
@@ -242,12 +256,17 @@ class Runner:
     def _record_finished(self, suggestions: Sequence[Suggestion]) -> None:
         """Write the rows of the configurations that are done, in order, up to the first that is not."""
         for suggestion in suggestions[len(self.folder.evaluations) - suggestions[0].trial :]:
-            done = self._calls_of(suggestion)
-            needed = self._race.required(suggestion, done)
-            counting = [call for call in done if call.replicate < needed]
-            if len(counting) < needed:
+            done = self._calls_if_done(suggestion)
+            if done is None:
                 return
-            self._record(summarize(suggestion, counting, self._clock.ms))
+            self._record(summarize(suggestion, done, self._clock.ms))
+
+    def _calls_if_done(self, suggestion: Suggestion) -> list[Replicate] | None:
+        """Return the calls of a configuration that count; None if one is missing."""
+        done = self._calls_of(suggestion)
+        needed = self._race.required(suggestion, done)
+        counting = [call for call in done if call.replicate < needed]
+        return None if len(counting) < needed else counting
 
     def _record(self, evaluation: Evaluation) -> None:
         self.folder.append_evaluation(evaluation)

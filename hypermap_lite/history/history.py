@@ -1,4 +1,4 @@
-"""The record of a run in memory: append-only, in the order of the trials."""
+"""The record of a run in memory: append-only, in the order of the trials, or in that in which they finished."""
 
 from __future__ import annotations
 
@@ -50,11 +50,21 @@ class Samples:
 
 
 class History:
-    """All finished evaluations of a run, trial 0 first, without gaps."""
+    """All finished evaluations of a run, trial 0 first, without gaps.
 
-    def __init__(self, space: SearchSpace, objectives: Sequence[Objective]) -> None:
+    Parameters
+    ----------
+    space, objectives
+        What they are of.
+    in_order
+        Whether they stand in the order of their trials. If not, they stand in that in which they are added: that of an
+        asynchronous run, where a later trial does not wait for an earlier one.
+    """
+
+    def __init__(self, space: SearchSpace, objectives: Sequence[Objective], *, in_order: bool = True) -> None:
         self.space = space
         self.objectives = tuple(objectives)
+        self.in_order = in_order
         self._evaluations: list[Evaluation] = []
 
     def append(self, evaluation: Evaluation) -> None:
@@ -63,10 +73,13 @@ class History:
         Raises
         ------
         UsageError
-            If its trial number is not the next one, or it is not of this space and these objectives.
+            If its trial number is not the next one (or, in any order, is there already), or it is not of this space and
+            these objectives.
         """
         trial = evaluation.trial
-        if trial != len(self):
+        if not self.in_order and any(e.trial == trial for e in self._evaluations):
+            raise UsageError(f"trial {trial} cannot be recorded: it is there already")
+        if self.in_order and trial != len(self):
             raise UsageError(f"trial {trial} cannot be recorded: the next trial is {len(self)}")
         if not self.space.contains(evaluation.configuration):
             raise UsageError(f"trial {trial} is not of this search space: {dict(evaluation.configuration)}")
@@ -86,12 +99,12 @@ class History:
     def __iter__(self) -> Iterator[Evaluation]:
         return iter(self._evaluations)
 
-    def __getitem__(self, trial: int) -> Evaluation:
-        return self._evaluations[trial]
+    def __getitem__(self, position: int) -> Evaluation:
+        return self._evaluations[position]
 
     @property
     def completed(self) -> list[Evaluation]:
-        """Those with objective values, in the order of the trials."""
+        """Those with objective values, in the history's order."""
         return [e for e in self._evaluations if e.is_completed]
 
     def X(self) -> FloatArray:  # noqa: N802 - the field's name

@@ -99,7 +99,8 @@ class Optimizer(ABC):
     def tell(self, evaluations: Sequence[Evaluation]) -> None:
         """Record finished evaluations of pending suggestions, in any order.
 
-        They enter the history in the order of their trials, so a later one waits for the earlier ones.
+        They enter the history in the order of their trials, so a later one waits for the earlier ones; at once, where
+        the history is in any order.
 
         Raises
         ------
@@ -111,8 +112,11 @@ class Optimizer(ABC):
             if evaluation.trial in [other.trial for other in evaluations[:i]]:
                 raise UsageError(f"tell: trial {evaluation.trial} is told twice")
         for evaluation in evaluations:
-            self._told[evaluation.trial] = evaluation
             del self._pending[evaluation.trial]
+            if self.history.in_order:
+                self._told[evaluation.trial] = evaluation
+            else:
+                self.history.append(evaluation)
         while (following := self._told.pop(len(self.history), None)) is not None:
             self.history.append(following)
 
@@ -126,6 +130,10 @@ class Optimizer(ABC):
         """
         self._require_pending(suggestion.trial, "adopt")
         self._pending[suggestion.trial] = suggestion
+
+    def expect(self, suggestions: Sequence[Suggestion]) -> None:
+        """Take up suggestions that an earlier session made and whose results are still to come."""
+        self._pending |= {suggestion.trial: suggestion for suggestion in suggestions}
 
     def _require_pending(self, trial: int, verb: str) -> None:
         if trial not in self._pending:

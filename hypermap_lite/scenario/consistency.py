@@ -13,7 +13,10 @@ from hypermap_lite.history.rows import RESERVED_COLUMNS
 from hypermap_lite.scenario.defaults import default_samples, has_belief
 from hypermap_lite.scenario.messages import enumerate_names
 
-RUN_FILES: Final = ("scenario.json", "history.csv", "evaluations.csv", "pareto.csv", "posterior_front.csv", "run.log")
+RUN_FILES: Final = (
+    *("scenario.json", "history.csv", "evaluations.csv", "suggestions.csv", "pareto.csv", "posterior_front.csv"),
+    "run.log",
+)
 """Files of the run folder that no other file may take the place of."""
 
 RESERVED_NAMES: Final = RESERVED_COLUMNS | {"feasible"}
@@ -29,6 +32,7 @@ def check_consistency(document: Mapping[str, Any]) -> None:
     _check_objective_priors(document["input_parameters"], document["objectives"])
     _check_limits(document)
     _check_budget(document)
+    _check_asynchronous(document["budget"], document["evaluator"])
     _check_client(document["evaluator"])
     _check_output(document["output"])
 
@@ -171,6 +175,26 @@ def _check_budget(document: Mapping[str, Any]) -> None:
             allowed=f"0 to {evaluations - 1}",
             hint="Raise budget.evaluations by as many as shall be repeated.",
         )
+
+
+def _check_asynchronous(budget: Mapping[str, Any], evaluator: Mapping[str, Any]) -> None:
+    """Refuse batches where each worker is to go on by itself."""
+    if not budget["asynchronous"]:
+        return
+    path, allowed = "$.budget.asynchronous", "false where configurations come in batches"
+    if budget["batch_size"] > 1:
+        hint = "Drop budget.batch_size: evaluator.workers says how many run at a time."
+        raise ScenarioError(path, f"there are batches of {budget['batch_size']}", allowed=allowed, hint=hint)
+    is_batch = evaluator.get("batch", False)
+    if is_batch or evaluator["type"] == "client_server":
+        whom = "a function that takes a whole batch" if is_batch else "a client that answers batches"
+        raise ScenarioError(path, f"the evaluator is {whom}", allowed=allowed)
+    if evaluator["racing"] is not None:
+        hint = "Drop evaluator.racing: its rivals are those of the time when a batch was suggested."
+        raise ScenarioError(path, "replicates race", allowed=allowed, hint=hint)
+    if budget["confirm_front"]:
+        hint = "Drop budget.confirm_front, or confirm the front of the finished run with asynchronous false."
+        raise ScenarioError(path, "the last evaluations confirm the front", allowed=allowed, hint=hint)
 
 
 def _check_client(evaluator: Mapping[str, Any]) -> None:

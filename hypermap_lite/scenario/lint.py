@@ -213,6 +213,8 @@ def _workers(scenario: Scenario) -> Iterator[tuple[str, str]]:
     if scenario.evaluator.workers > 1 and (why := _why_workers_are_idle(scenario)):
         yield "$.evaluator.workers", f"they are not used: {why}."
         return
+    if scenario.budget.asynchronous:
+        return
     racing, at_once, what = scenario.evaluator.racing, scenario.evaluator.replicates, "replicates"
     if racing is not None:
         at_once, what = max(racing.minimum, racing.step), "the replicates between two looks of the race"

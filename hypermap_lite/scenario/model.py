@@ -88,6 +88,9 @@ class BudgetSpec:
     minutes: float | None = None
     """No new batch is started after this wall-clock time [min]."""
 
+    asynchronous: bool = False
+    """Whether a worker gets the next configuration as soon as it is free, instead of waiting for a batch."""
+
     confirm_front: int = 0
     """Evaluations at the end that repeat configurations which may be on the front."""
 

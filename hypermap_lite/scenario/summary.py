@@ -189,6 +189,8 @@ def _care(options: Mapping[str, Any]) -> str:
 def _budget(scenario: Scenario) -> str:
     budget = scenario.budget
     batches = "one at a time" if budget.batch_size == 1 else f"{budget.batch_size} at a time"
+    if budget.asynchronous:
+        batches = "one for each worker that is free"
     limit = "" if budget.minutes is None else f", at most {budget.minutes:g} min"
     return f"{budget.evaluations} evaluations, {batches}{limit}"
 

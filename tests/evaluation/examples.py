@@ -47,7 +47,7 @@ class ScriptedOptimizer(Optimizer):
     """Suggests a point that depends on everything `ask` may depend on: trial, history and pending suggestions."""
 
     def __init__(self, history: History | None = None, *, n_available: int = 10**6) -> None:
-        super().__init__(history or History(SPACE, OBJECTIVES))
+        super().__init__(History(SPACE, OBJECTIVES) if history is None else history)
         self.n_available = n_available
 
     def _suggest(self, trial: int) -> Suggestion | None:

@@ -35,6 +35,14 @@ def test_an_empty_history_has_the_right_shapes() -> None:
     assert np.array_equal(history.X_all(), np.empty((0, 1)))
 
 
+def test_a_history_in_any_order_keeps_the_order_of_its_rows_and_takes_each_trial_once() -> None:
+    history = History(SPACE, OBJECTIVES, in_order=False)
+    history.extend([row(2), row(0), row(3)])
+    assert history.X().tolist() == [[0.5], [0.0], [0.75]]
+    with pytest.raises(UsageError, match="trial 2 cannot be recorded: it is there already"):
+        history.append(row(2))
+
+
 def test_trials_come_in_order() -> None:
     history = History(SPACE, OBJECTIVES)
     with pytest.raises(UsageError, match="trial 1 cannot be recorded: the next trial is 0"):

@@ -361,6 +361,18 @@ BAD: dict[str, Bad] = {
         changed("budget", {"evaluations": 5})[:-1] + ', "design_of_experiment": {"number_of_samples": 7}}',
         ("$.design_of_experiment.number_of_samples", "design of 7", "budget of 5", "1 to 5"),
     ),
+    "asynchronous_batches": Bad(
+        changed("budget", {"asynchronous": True, "batch_size": 2}),
+        ("$.budget.asynchronous", "batches of 2", "evaluator.workers"),
+    ),
+    "asynchronous_client": Bad(
+        changed("budget", {"asynchronous": True})[:-1] + ', "evaluator": {"type": "client_server"}}',
+        ("$.budget.asynchronous", "a client that answers batches"),
+    ),
+    "asynchronous_batch_function": Bad(
+        changed("budget", {"asynchronous": True})[:-1] + ', "evaluator": {"batch": true}}',
+        ("$.budget.asynchronous", "a function that takes a whole batch"),
+    ),
     "zero_batch_size": Bad(changed("budget", {"batch_size": 0}), ("$.budget.batch_size", "0 is too small", ">= 1")),
     "unknown_evaluator": Bad(
         changed("evaluator", "shell"),

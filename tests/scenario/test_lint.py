@@ -193,6 +193,7 @@ def test_workers_beyond_the_calls_between_two_looks_are_named() -> None:
 def test_workers_that_never_get_a_call_are_named() -> None:
     (warning,) = warnings(evaluator={"workers": 4, "replicates": 3})
     assert "only 3 calls" in warning
+    assert warnings(evaluator={"workers": 4}, budget={"asynchronous": True}) == []
 
 
 @pytest.mark.parametrize(

@@ -120,6 +120,7 @@ def test_the_budget_line_says_batches_and_minutes() -> None:
     assert "30 evaluations, 3 at a time, at most 2.5 min" in page(
         budget={"evaluations": 30, "batch_size": 3, "minutes": 2.5}
     )
+    assert "30 evaluations, one for each worker that is free" in page(budget={"evaluations": 30, "asynchronous": True})
 
 
 def test_a_density_says_what_it_rests_on() -> None:
