@@ -17,13 +17,16 @@ from hypermap_lite.maximizers.base import (
 from hypermap_lite.maximizers.local_search import LocalSearch
 from hypermap_lite.maximizers.neighbours import climb
 from hypermap_lite.space.search_space import SearchSpace
-from hypermap_lite.typing import FloatArray
+from hypermap_lite.typing import BoolArray, FloatArray
 
 MAX_ITERATIONS = 50
 """Of L-BFGS-B, for all starts together."""
 
 ROUNDS = 3
 """Alternations between real and discrete axes."""
+
+MANY_LEVELS = 50
+"""From so many levels on an ordered discrete axis is climbed as if real, then by steps from the nearest level."""
 
 BISECTIONS = 30
 """Halvings of the way from a start to a point beyond what is allowed."""
@@ -34,9 +37,11 @@ WORST = -1e10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MultistartGradient:
-    """The best of many candidates, refined by L-BFGS-B on the real axes and one-exchange steps on the others.
+    """The best of many candidates, refined by L-BFGS-B on the real axes and one-exchange steps on the others, in turn.
 
-    An ascent that leaves what constraints allow ends at their edge; steps on all axes go on from there.
+    No combinations are enumerated: a step changes one axis, so twenty axes of ten levels have 180 neighbours. Integers
+    and ordinals of many levels take part in both: the ascent leads them far, the steps to the right level. An ascent
+    that leaves what constraints allow ends at their edge; steps on all axes go on from there.
 
     All starts are one problem, the sum of their scores, so that each step evaluates them together. A score without
     gradient is left to `LocalSearch`.
@@ -54,7 +59,8 @@ class MultistartGradient:
     def maximize(self, problem: MaximizationProblem) -> Maximum | None:
         """Return the best new point found; None if the space holds no other."""
         is_real = problem.space.is_continuous
-        if not problem.scorer.is_differentiable or not is_real.any():
+        is_listed = problem.space.n_configurations <= self.candidates
+        if not problem.scorer.is_differentiable or not is_smooth(problem.space).any() or is_listed:
             return LocalSearch(candidates=self.candidates, starts=self.starts).maximize(problem)
         X = draw_candidates(problem, self.candidates)
         if not len(X):
@@ -73,29 +79,34 @@ class MultistartGradient:
         return best_unseen(problem, points, np.concatenate([problem.score(refined), scores]))
 
     def _ascend(self, problem: MaximizationProblem, starts: FloatArray) -> FloatArray:
-        """Improve k starts along the real axes, shape (k, d)."""
+        """Improve k starts along the axes that gradients lead along, shape (k, d)."""
         from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
 
-        is_real = problem.space.is_continuous
+        is_free = is_smooth(problem.space)
 
         def negative(flat: FloatArray) -> tuple[float, FloatArray]:
             X = starts.copy()
-            X[:, is_real] = flat.reshape(len(starts), -1)
+            X[:, is_free] = flat.reshape(len(starts), -1)
             score, gradient = problem.scorer.with_gradient(X)
             usable = np.isfinite(score) & np.isfinite(gradient).all(axis=1)
             score, gradient = np.where(usable, score, WORST), np.where(usable[:, None], gradient, 0.0)
-            return -float(score.sum()), -gradient[:, is_real].ravel()
+            return -float(score.sum()), -gradient[:, is_free].ravel()
 
-        start = starts[:, is_real].ravel()
+        start = starts[:, is_free].ravel()
         bounds = [(0.0, 1.0)] * len(start)
         result = minimize(
             negative, start, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": MAX_ITERATIONS}
         )
         moved = starts.copy()
-        moved[:, is_real] = np.clip(result.x, 0.0, 1.0).reshape(len(starts), -1)
-        moved = back_to_allowed(problem.space, starts, moved)
-        better = problem.score(moved) > problem.score(starts)
+        moved[:, is_free] = np.clip(result.x, 0.0, 1.0).reshape(len(starts), -1)
+        moved = problem.space.snap(back_to_allowed(problem.space, starts, moved))
+        better = (problem.score(moved) > problem.score(starts)) & problem.space.is_allowed(moved)
         return np.where(better[:, None], moved, starts)
+
+
+def is_smooth(space: SearchSpace) -> BoolArray:
+    """Tell which axes gradients lead along: real ones, and ordered ones of many levels, shape (d,)."""
+    return np.array([p.n_levels is None or (p.is_ordered and p.n_levels >= MANY_LEVELS) for p in space.parameters])
 
 
 def back_to_allowed(space: SearchSpace, starts: FloatArray, moved: FloatArray) -> FloatArray:

@@ -190,3 +190,42 @@ def test_an_exhausted_constrained_space_gives_nothing(name: str) -> None:
         last = maximizer.maximize(problem(space, Bowl(np.full(3, 0.5)), seen=seen[1:]))
         assert last is not None
         assert space.keys(last.x[None])[0] == seen[0]
+
+
+class Smooth(Bowl):
+    """A bowl that counts how many points it is asked for."""
+
+    n_asked = 0
+
+    def __call__(self, X: np.ndarray) -> np.ndarray:
+        self.n_asked += len(X)
+        return super().__call__(X)
+
+
+def test_many_levels_are_climbed_by_gradients_and_ended_by_steps() -> None:
+    space = SearchSpace(
+        (
+            *(IntegerParameter(name=f"n{i}", low=0, high=10**6) for i in range(4)),
+            OrdinalParameter(name="o", values=tuple(float(v) for v in range(100))),
+            CategoricalParameter(name="c", values=tuple("abcdefgh")),
+        )
+    )
+    target = {"n0": 123_456, "n1": 999_999, "n2": 0, "n3": 500_001, "o": 37.0, "c": "f"}
+    bowl = Smooth(space.encode([target])[0])
+    found = MAXIMIZERS["multistart_gradient"]().maximize(problem(space, bowl))
+    assert found is not None
+    assert space.decode(found.x[None]) == [target]
+    assert bowl.n_asked < 5_000  # by steps alone 11,000
+
+
+def test_twenty_categories_are_maximized_without_their_combinations() -> None:
+    space = SearchSpace(tuple(CategoricalParameter(name=f"c{i}", values=tuple("abcdefghij")) for i in range(20)))
+    worth = np.random.default_rng(0).standard_normal((20, 10))
+
+    class Additive(Bowl):
+        def __call__(self, X: np.ndarray) -> np.ndarray:
+            return worth[np.arange(20), np.minimum((X * 10).astype(int), 9)].sum(axis=1)
+
+    found = MAXIMIZERS["multistart_gradient"]().maximize(problem(space, Additive(np.zeros(20))))
+    assert found is not None
+    assert found.score == pytest.approx(worth.max(axis=1).sum())
