@@ -15,7 +15,7 @@ from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.space.walk import spread
-from hypermap_lite.typing import FloatArray, Rng
+from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 PERTURBATIONS = 24
 """Perturbed copies of each incumbent among the candidates."""
@@ -54,6 +54,11 @@ class MaximizationProblem:
     """Keys of points that must not be chosen again."""
 
     rng: Rng
+    pending: FloatArray | None = None
+    """Points to keep at a distance from, shape (p, d); None for none."""
+
+    separation: float = 0.0
+    """That distance, in the largest coordinate difference; points in other categories are far."""
 
     def score(self, X: FloatArray) -> FloatArray:
         """Return the scores of n points, shape (n,); what is not a number is the worst."""
@@ -68,6 +73,15 @@ class MaximizationProblem:
         if rough is not None and len(X) > CLOSER_LOOKS:
             X = X[np.sort(np.argsort(-_numbers(rough(X)), kind="stable")[:CLOSER_LOOKS])]
         return X, self.score(X)
+
+    def is_apart(self, X: FloatArray) -> BoolArray:
+        """Tell which of n points keep their distance from all that are pending, shape (n,)."""
+        if self.pending is None or not self.separation or not len(self.pending):
+            return np.ones(len(X), dtype=bool)
+        steps = np.abs(X[:, None, :] - self.pending[None, :, :])
+        needed = np.where(self.space.is_ordered, self.separation, np.finfo(float).tiny)
+        is_far: BoolArray = np.any(steps >= needed, axis=2)
+        return np.all(is_far, axis=1)
 
 
 def _numbers(scores: FloatArray) -> FloatArray:
@@ -153,9 +167,11 @@ def choose_starts(X: FloatArray, scores: FloatArray, n: int) -> FloatArray:
 
 
 def best_unseen(problem: MaximizationProblem, X: FloatArray, scores: FloatArray) -> Maximum | None:
-    """Return the best of n points that is allowed and has not been seen, or None."""
+    """Return the best of n points that is allowed and has not been seen, apart from pending ones if there is one."""
     new = problem.space.unseen(X, problem.seen) & problem.space.is_allowed(X)
     if not new.any():
         return None
+    apart = new & problem.is_apart(X)
+    new = apart if apart.any() else new
     i = int(np.flatnonzero(new)[np.argmax(scores[new])])
     return Maximum(x=X[i], score=float(scores[i]))

@@ -204,6 +204,8 @@ class BayesianOptimizer(Optimizer):
                 incumbents=incumbents,
                 seen=self.taken_keys(),
                 rng=rng,
+                pending=space.encode([s.configuration for s in self.in_flight]),
+                separation=self._method.separation,
             )
         )
         if best is None:

@@ -37,3 +37,6 @@ class Method:
     ----------
     .. [1] Nardi, Koeplinger, Olukotun. Practical Design Space Exploration. MASCOTS 2019 (HyperMapper).
     """
+
+    separation: float = 0.0
+    """Smallest distance to a configuration under evaluation, in the largest coordinate difference; 0 for any."""
