@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -20,7 +21,7 @@ from hypermap_lite.surrogates.base import (
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 if TYPE_CHECKING:
-    from sklearn.ensemble import RandomForestRegressor
+    from sklearn.tree._tree import Tree
 
 VARIANCE_FLOOR = 1e-8
 """Smallest variance of a leaf, in units of the squared largest difference of outputs."""
@@ -92,26 +93,44 @@ class RandomForest:
         self, X: FloatArray, Y: FloatArray, seed: int, permutations: Permutations = NO_PERMUTATIONS
     ) -> tuple[Forest, ...]:
         """Return one forest per objective."""
-        from sklearn.ensemble import RandomForestRegressor  # slow to import, used here only
-
+        features = features_of(X, permutations)
         forests = []
         for k, y in enumerate(Y.T):
             offset, spread = float(y[0]), float(np.abs(y - y[0]).max())
             magnitude = spread if spread > SMALLEST_SPREAD else 1.0
-            regressor = RandomForestRegressor(
-                n_estimators=self.number_of_trees,
-                max_features=self.max_features,
-                min_samples_leaf=self.min_samples_leaf,
-                min_samples_split=self.min_samples_split or 2,
-                bootstrap=self.bootstrap is not False,
-                random_state=(seed + k) % 2**31,
-            )
-            features = features_of(X, permutations)
-            regressor.fit(features, (y - offset) / magnitude)
+            trees = self._trees(features, (y - offset) / magnitude, (seed + k) % 2**31)
             if self.random_thresholds:
-                redraw_thresholds(regressor, features, np.random.default_rng([seed, k]))
-            forests.append(Forest.of(regressor, offset, magnitude))
+                redraw_thresholds(trees, features, np.random.default_rng([seed, k]))
+            forests.append(Forest.of(trees, offset, magnitude))
         return tuple(forests)
+
+    def _trees(self, X: FloatArray, y: FloatArray, seed: int) -> list[Tree]:
+        """Grow the trees of one forest, those of scikit-learn's ``RandomForestRegressor`` of the same random state.
+
+        That class copies and checks its options for every tree, which takes longer than growing one on few rows.
+        """
+        from sklearn import config_context  # slow to import, used here only
+        from sklearn.tree import DecisionTreeRegressor
+        from sklearn.utils import check_random_state
+
+        random_state, n = check_random_state(seed), len(X)
+        single, outputs = np.ascontiguousarray(X, dtype=np.float32), np.ascontiguousarray(y[:, None])
+        trees = []
+        with config_context(assume_finite=True, skip_parameter_validation=True):
+            for _ in range(self.number_of_trees):
+                own = int(random_state.randint(np.iinfo(np.int32).max))
+                weights = None
+                if self.bootstrap is not False:
+                    rows = check_random_state(own).randint(0, n, n, dtype=np.int32)
+                    weights = np.bincount(rows, minlength=n)
+                regressor = DecisionTreeRegressor(
+                    max_features=self.max_features,
+                    min_samples_leaf=self.min_samples_leaf,
+                    min_samples_split=self.min_samples_split or 2,
+                    random_state=own,
+                )
+                trees.append(regressor.fit(single, outputs, sample_weight=weights, check_input=False).tree_)
+        return trees
 
 
 def features_of(X: FloatArray, permutations: Permutations) -> FloatArray:
@@ -122,14 +141,13 @@ def features_of(X: FloatArray, permutations: Permutations) -> FloatArray:
     return np.hstack(columns)
 
 
-def redraw_thresholds(regressor: RandomForestRegressor, X: FloatArray, rng: Rng) -> None:
+def redraw_thresholds(trees: Sequence[Tree], X: FloatArray, rng: Rng) -> None:
     """Move each split of a fitted forest to a place drawn evenly between the two points it separates.
 
     No point of `X`, shape (n, p), what the trees split, changes its leaf.
     """
     single = X.astype(np.float32)  # as the trees see it
-    for estimator in regressor.estimators_:
-        tree = estimator.tree_
+    for tree in trees:
         visits = tree.decision_path(single).tocsc()
         for node in np.flatnonzero(tree.children_left != tree.children_right):
             values = single[visits.indices[visits.indptr[node] : visits.indptr[node + 1]], tree.feature[node]]
@@ -152,12 +170,11 @@ class Forest:
     scale: float
 
     @classmethod
-    def of(cls, regressor: RandomForestRegressor, offset: float, scale: float) -> Forest:
-        """Read the leaves of a fitted regressor."""
-        trees = [estimator.tree_ for estimator in regressor.estimators_]
+    def of(cls, trees: Sequence[Tree], offset: float, scale: float) -> Forest:
+        """Read the leaves of fitted trees."""
         means = [tree.value[:, 0, 0] for tree in trees]
         variances = [np.maximum(tree.impurity, VARIANCE_FLOOR) for tree in trees]
-        return cls(trees, means, variances, offset, scale)
+        return cls(list(trees), means, variances, offset, scale)
 
     def per_tree(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean and standard deviation, both (T, n), of the leaf of each of T trees, in scaled outputs."""

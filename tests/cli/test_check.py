@@ -79,7 +79,14 @@ def test_a_mistake_found_by_a_part_names_the_file_that_wrote_it(
 def test_a_good_scenario_is_summarized(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", write(folder, GOOD)]) == 0
     output = capsys.readouterr().out
-    expected = ["x     real", "-5 to 10", "gain  maximize", "sobol", "noisy_expected_hypervolume_improvement", "50 evaluations"]
+    expected = [
+        "x     real",
+        "-5 to 10",
+        "gain  maximize",
+        "sobol",
+        "noisy_expected_hypervolume_improvement",
+        "50 evaluations",
+    ]
     assert [part for part in expected if part not in output] == [], output
 
 

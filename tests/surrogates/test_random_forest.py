@@ -17,10 +17,16 @@ FOREST = RandomForest(number_of_trees=30).fit(X, Y, is_ordered=ORDERED, rng=np.r
 Z = np.array([[0.1, 0.5], [0.9, 0.5]])
 
 
-def test_mean_is_scikit_learns() -> None:
-    regressor = RandomForestRegressor(n_estimators=20, random_state=0).fit(X, X[:, 0] ** 2)
-    mean, _ = Forest.of(regressor, offset=0.0, scale=1.0).per_tree(Z)
-    assert mean.mean(axis=0) == pytest.approx(regressor.predict(Z))
+@pytest.mark.parametrize("bootstrap", [True, False])
+def test_trees_are_scikit_learns_to_the_last_bit(bootstrap: bool) -> None:
+    options = {"max_features": 0.5, "min_samples_leaf": 2, "min_samples_split": 4}
+    y = np.sin(7 * X[:, 0]) + X[:, 1]
+    theirs = RandomForestRegressor(n_estimators=20, random_state=5, bootstrap=bootstrap, **options).fit(X, y)
+    ours = RandomForest(number_of_trees=20, bootstrap=bootstrap, **options)._trees(X, y, 5)
+    many = RNG.random((300, 2))
+    mean, _ = Forest.of(ours, offset=0.0, scale=1.0).per_tree(many)
+    assert np.array_equal(mean, [tree.predict(many) for tree in theirs.estimators_])
+    assert [tree.node_count for tree in ours] == [tree.tree_.node_count for tree in theirs.estimators_]
 
 
 def test_a_step_is_learned() -> None:
