@@ -67,8 +67,11 @@ class MaximizationProblem:
     def score_candidates(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the points worth a closer look, shape (k, d), and their scores, shape (k,); all n if they are few.
 
-        Where the scorer has a cheaper approximation, that one chooses them.
+        Where the scorer has a cheaper approximation, that one chooses them. Those that keep no distance from pending
+        ones are left out as long as there are others.
         """
+        if (is_apart := self.is_apart(X)).any():
+            X = X[is_apart]
         rough = rough_of(self.scorer)
         if rough is not None and len(X) > CLOSER_LOOKS:
             X = X[np.sort(np.argsort(-_numbers(rough(X)), kind="stable")[:CLOSER_LOOKS])]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from hypermap_lite.errors import ScenarioError
 from hypermap_lite.maximizers.base import (
     MaximizationProblem,
     Maximum,
@@ -24,9 +26,6 @@ MAX_ITERATIONS = 50
 
 ROUNDS = 3
 """Alternations between real and discrete axes."""
-
-MANY_LEVELS = 50
-"""From so many levels on an ordered discrete axis is climbed as if real, then by steps from the nearest level."""
 
 BISECTIONS = 30
 """Halvings of the way from a start to a point beyond what is allowed."""
@@ -53,14 +52,19 @@ class MultistartGradient:
     starts: int = 4
     """Candidates that are refined."""
 
+    smooth_levels: int = 50
+    """From so many levels on an ordered discrete axis is climbed as if real, then by steps; 0: no such axis is."""
+
     def __post_init__(self) -> None:
         check_options(self.candidates, self.starts)
+        if self.smooth_levels < 0:
+            raise ScenarioError("$.smooth_levels", f"there are {self.smooth_levels} levels", allowed="an integer >= 0")
 
     def maximize(self, problem: MaximizationProblem) -> Maximum | None:
         """Return the best new point found; None if the space holds no other."""
         is_real = problem.space.is_continuous
         is_listed = problem.space.n_configurations <= self.candidates
-        if not problem.scorer.is_differentiable or not is_smooth(problem.space).any() or is_listed:
+        if not problem.scorer.is_differentiable or not is_smooth(problem.space, self.smooth_levels).any() or is_listed:
             return LocalSearch(candidates=self.candidates, starts=self.starts).maximize(problem)
         X = draw_candidates(problem, self.candidates)
         if not len(X):
@@ -82,7 +86,7 @@ class MultistartGradient:
         """Improve k starts along the axes that gradients lead along, shape (k, d)."""
         from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
 
-        is_free = is_smooth(problem.space)
+        is_free = is_smooth(problem.space, self.smooth_levels)
 
         def negative(flat: FloatArray) -> tuple[float, FloatArray]:
             X = starts.copy()
@@ -104,9 +108,10 @@ class MultistartGradient:
         return np.where(better[:, None], moved, starts)
 
 
-def is_smooth(space: SearchSpace) -> BoolArray:
-    """Tell which axes gradients lead along: real ones, and ordered ones of many levels, shape (d,)."""
-    return np.array([p.n_levels is None or (p.is_ordered and p.n_levels >= MANY_LEVELS) for p in space.parameters])
+def is_smooth(space: SearchSpace, many: int) -> BoolArray:
+    """Tell which axes gradients lead along: real ones, and ordered ones of so many levels, shape (d,); 0: real ones."""
+    least = many or math.inf
+    return np.array([p.n_levels is None or (p.is_ordered and p.n_levels >= least) for p in space.parameters])
 
 
 def back_to_allowed(space: SearchSpace, starts: FloatArray, moved: FloatArray) -> FloatArray:

@@ -118,7 +118,7 @@ class BayesianOptimizer(Optimizer):
             if rng.random() < self._method.epsilon:
                 return self._drawn_by(RandomSampling(), trial, rng)
         rng = generator(self._seed, Stream.SUGGESTION, trial)
-        has_objectives = len(self.history.completed) >= MIN_COMPLETED
+        has_objectives = len(self._models.observed()[0]) >= MIN_COMPLETED
         feasibility = self._models.feasibility(searching=None if has_objectives else self.in_flight)
         guidance = self._guidance(trial)
         if has_objectives:
@@ -269,7 +269,9 @@ class BayesianOptimizer(Optimizer):
             X = X[feasibility.log_probability(X) > math.log(0.5)]
         evaluated, foreseen = posterior.predict(self.history.X()).mean, posterior.predict(X)
         is_sure = (foreseen.std < SURE * np.ptp(evaluated[non_dominated(evaluated)], axis=0)).all(axis=1)
-        return infer_reference_point(np.vstack([evaluated, foreseen.mean[is_sure]]))
+        inferred = infer_reference_point(np.vstack([evaluated, foreseen.mean[is_sure]]))
+        given = [np.nan if o.reference_point is None else o.sign * o.reference_point for o in self.history.objectives]
+        return np.where(np.isnan(given), inferred, given)
 
     def _spread_points(self, rng: Rng) -> FloatArray:
         """Return allowed points all over the space, shape (n, d)."""

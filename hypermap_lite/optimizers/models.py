@@ -54,33 +54,38 @@ class Models:
         self._posterior_of: tuple[int, Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
-    def observed(self) -> tuple[FloatArray, FloatArray]:
-        """Return what the surrogate is fitted to: the completed evaluations, or one row per distinct configuration."""
-        if not self._surrogate.noise_from_replicates:
-            return self._history.X(), self._history.Y()
-        samples = self._history.samples()
-        return samples.X, samples.Y
+    def observed(self, n: int | None = None) -> tuple[FloatArray, FloatArray]:
+        """Return what the surrogate is fitted to: the completed evaluations, or one row per distinct configuration.
+
+        With n, those of the first n rows of the history.
+        """
+        if self._surrogate.noise_from_replicates:
+            samples = self._history.samples(n)
+            return samples.X, samples.Y
+        k = sum(row.is_completed for row in list(self._history)[:n])
+        return self._history.X()[:k], self._history.Y()[:k]
 
     def posterior(self) -> Posterior:
         """Return what is known of the objectives after the completed evaluations, of which there must be one."""
-        is_pooled = self._surrogate.noise_from_replicates
-        X, Y = self._history.X(), self._history.Y()
-        n = len(self._history) if is_pooled else len(X)
+        n = len(self._history)
         if self._posterior_of is None or self._posterior_of[0] != n:
-            self._posterior_of = (n, self._fit_samples() if is_pooled else self._fit(X, Y))
+            self._posterior_of = (n, self._posterior_after(n))
         return self._posterior_of[1]
+
+    def _posterior_after(self, n: int) -> Posterior:
+        """Return the posterior given the first n rows of the history."""
+        return self._fit_samples(n) if self._surrogate.noise_from_replicates else self._fit(*self.observed(n))
 
     def evidence(self, n: int) -> Evidence | None:
         """Return what was known when the history had n rows; None if next to nothing."""
-        rows = list(self._history)[:n]
-        k = sum(row.is_completed for row in rows)
-        if k < MIN_COMPLETED:
+        X, _ = self.observed(n)
+        if len(X) < MIN_COMPLETED:
             return None
-        X, Y = self._history.X(), self._history.Y()
-        feasibility = self.feasibility(n=sum(row.state.is_feasible is not None for row in rows))
+        n_judged = sum(row.state.is_feasible is not None for row in list(self._history)[:n])
+        feasibility = self.feasibility(n=n_judged)
         return Evidence(
-            posterior=self.posterior() if k == len(X) else self._fit(X[:k], Y[:k]),
-            X=X[:k],
+            posterior=self.posterior() if n == len(self._history) else self._posterior_after(n),
+            X=X,
             X_all=self._history.X_all()[:n],
             reference_point=reference_point_of(self._history.objectives),
             log_probability=None if feasibility is None else feasibility.log_probability,
@@ -118,13 +123,13 @@ class Models:
             self._warm_starts[n] = posterior.hyperparameters  # what a later call would work out again
         return posterior
 
-    def _fit_samples(self) -> Posterior:
-        """Fit to one row per distinct configuration, with the noise of its mean.
+    def _fit_samples(self, n: int) -> Posterior:
+        """Fit to one row per distinct configuration among the first n rows, with the noise of its mean.
 
         The warm start of a milestone comes from the rows up to its last new configuration: later ones may repeat an
         earlier configuration, which changes the mean and all variances, but not what a milestone was fitted to.
         """
-        start, samples, ends = None, self._history.samples(), self._history.ends_of_samples()
+        start, samples, ends = None, self._history.samples(n), self._history.ends_of_samples()
         growth = self._surrogate.warm_start_growth
         for k in () if growth is None else milestones(len(samples.X), growth):
             if k not in self._warm_starts:

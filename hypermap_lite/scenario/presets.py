@@ -20,16 +20,19 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
         "optimizer": {"type": "bayesian"},
         "surrogate": {
             "type": "gaussian_process",
+            "categorical_prior": False,
             "noise_floor": 1e-6,
             "lengthscale_location": math.sqrt(2.0),
             "lengthscale_width": math.sqrt(3.0),
             "restart": True,
         },
+        "maximizer": {"type": "multistart_gradient", "smooth_levels": 0},
         "acquisition": {
             "type": "noisy_expected_improvement",
             "screening": 0,
             "scalarization": {"type": "linear"},
             "weights": {"type": "dirichlet", "alpha": 1.0},
+            "feasibility_weighting": {"method": "probability", "exponent": 1.0},
             "prior_weighting": {"method": "pibo", "floor": 1e-6, "prior_free": 0.0, "safeguard": False},
         },
     }

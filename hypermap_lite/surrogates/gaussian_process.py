@@ -60,6 +60,9 @@ class GaussianProcess:
     lengthscale_width: float = 0.7
     """Standard deviation of that prior, > 0."""
 
+    categorical_prior: bool = True
+    """Whether categorical axes have a lengthscale prior of their own, by their number, instead of that of all axes."""
+
     noise_from_replicates: bool = False
     """Whether the noise of each configuration is taken from its replicates, where there are several, and only a factor
     near one is learned. Rows of one configuration are then one."""
@@ -93,7 +96,7 @@ class GaussianProcess:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
         outputs = [Standardized.of(column) for column in Y.T]
         prior = HyperPrior.over(
-            is_ordered,
+            is_ordered if self.categorical_prior else np.ones_like(is_ordered),
             permutations,
             has_noise=self.noise,
             noise_floor=self.noise_floor,

@@ -96,6 +96,7 @@ class HyperPrior:
     output_sigma: float = 2.0
     noise_ceiling: float = NOISE_CEILING
     categorical_axes: tuple[int, ...] = ()
+    """Axes whose lengthscales have a prior of their own."""
 
     @classmethod
     def over(cls, is_ordered: BoolArray, permutations: Permutations, **options: Any) -> HyperPrior:

@@ -267,3 +267,32 @@ def test_a_trade_off_drawn_again_in_vain_loses_no_suggestion() -> None:
     optimizer._promise = lambda context, suggestion: -np.inf
     assert [s.phase for s in optimizer.ask()] == ["model"]
     assert maximizer.n_calls == 2
+
+
+def test_a_reference_point_of_one_objective_alone_is_kept_to() -> None:
+    objectives = [{"name": "near", "reference_point": 0.2}, {"name": "far"}]
+
+    def trade_off(c: dict) -> dict[str, float]:
+        return {"near": c["a"] + 0.1 * abs(c["b"]), "far": 1 - np.sqrt(c["a"]) + 0.1 * abs(c["b"])}
+
+    parameters = {n: {"parameter_type": "real", "values": [0, 1]} for n in ("a", "b")}
+    scenario = scenario_of(input_parameters=parameters, objectives=objectives, budget={"evaluations": 20})
+    optimizer = run(scenario, 20, function=trade_off)
+    chosen = [e.values["near"] for e in optimizer.history if e.suggestion.phase == "model"]
+    assert np.mean([value < 0.25 for value in chosen]) > 0.8
+
+
+@pytest.mark.parametrize("separation", [0.1, 0.2])
+def test_a_batch_keeps_its_distance_where_a_few_draws_choose_the_candidates(separation: float) -> None:
+    def parabolas(c: dict) -> dict[str, float]:
+        return {"near": (c["a"] - 0.4) ** 2, "far": -((c["a"] - 0.5) ** 2)}
+
+    scenario = scenario_of(
+        input_parameters={"a": {"parameter_type": "real", "values": [0, 1]}},
+        optimizer={"separation": separation},
+        budget={"evaluations": 17, "batch_size": 3},
+    )
+    rows = list(run(scenario, 17, batch=3, function=parabolas).history)
+    for start in range(6, 15, 3):
+        a = sorted(row.configuration["a"] for row in rows[start : start + 3])
+        assert min(a[1] - a[0], a[2] - a[1]) >= separation - 1e-9

@@ -82,3 +82,21 @@ def test_confirmation_that_failed_does_not_stop_the_search():
     history = build_history(load_scenario(scenario))
     history.extend(optimizer.history)
     assert len(history.samples().X) == 11
+
+
+def test_checks_of_a_prior_are_the_same_when_they_are_made_again():
+    """A run that goes on works out the earlier checks anew, from the rows of their time."""
+    prior = {"type": "gaussian", "mean": 0.9, "std": 0.05}
+    parameters = {name: {"parameter_type": "real", "values": [0, 1], "prior": prior} for name in ("a", "b")}
+    scenario = load_scenario(scenario_of(input_parameters=parameters, budget={"evaluations": 16}, **POOLED))
+    going = build_optimizer(scenario)
+    trusts = []
+    while len(going.history) < 16:
+        again = build_optimizer(scenario)
+        again.history.extend(going.history)
+        (asked,), (repeated,) = going.ask(), again.ask()
+        assert repeated.configuration == asked.configuration
+        assert (repeated.prior_weight, repeated.prior_trust) == (asked.prior_weight, asked.prior_trust)
+        trusts.append(asked.prior_trust)
+        going.tell([sampled(asked)])
+    assert min(trust for trust in trusts if trust is not None) < 1  # there were checks, and they said something

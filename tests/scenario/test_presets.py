@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import json
 from typing import Any
 
 import pytest
 
+from hypermap_lite.history.added_later import ADDED_LATER
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.model import Scenario
 from hypermap_lite.scenario.presets import PRESETS
@@ -54,3 +56,15 @@ def test_a_preset_can_be_set_on_the_command_line() -> None:
 
 def test_the_schema_lists_the_presets() -> None:
     assert root_schema()["properties"]["preset"]["enum"] == [*PRESETS, None]
+
+
+def test_the_papers_method_has_no_option_that_came_later() -> None:
+    """What was not there when the paper's experiments were run has the value that changes nothing."""
+    parameters = {"x": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0, "std": 1}}}
+    document = {"preset": "paper", "input_parameters": parameters, "objectives": [{"name": "f"}, {"name": "g"}]}
+    canonical = load_scenario(document).canonical
+    for place, value in ADDED_LATER.items():
+        section: Any = canonical
+        for name in place.removeprefix("$.").split("."):
+            section = section[name]
+        assert section == json.loads(value), place
