@@ -217,7 +217,7 @@ class Runner:
                 break
         self._check_failures()
         rows = self.folder.evaluations[suggestions[0].trial : suggestions[-1].trial + 1]
-        self.folder.write_pareto()
+        self.folder.write_pareto(only_if_changed=True)
         if len(rows) == len(suggestions):
             self.optimizer.tell(rows)
         elif not self.should_stop():  # asking again would go on for ever

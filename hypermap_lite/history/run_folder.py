@@ -86,6 +86,7 @@ class RunFolder:
         self._calls = EvaluationsFormat(space, objectives, feasible_output=feasible_output)
         self._exports = Exports(self._history, samples_file=samples_file, pareto_file=pareto_file)
         self._first_rows = first_rows
+        self._front_written: list[Evaluation] | None = None
         self._open = ExitStack()
 
     @property
@@ -248,9 +249,12 @@ class RunFolder:
         logger.info("%d failed evaluations at the end are set aside, to be called again", n_dropped)
         return n_dropped
 
-    def write_pareto(self) -> None:
-        """Rewrite ``pareto.csv`` from the rows so far."""
+    def write_pareto(self, *, only_if_changed: bool = False) -> None:
+        """Rewrite ``pareto.csv`` from the rows so far; on request only if the front is another than the last time."""
         front = self.pareto_front()
+        if only_if_changed and self._front_written is not None and _are_same(front, self._front_written):
+            return
+        self._front_written = front
         rows = "".join(map(self._history.format, front))
         write_atomically(self.pareto_path, format_record(self._history.columns) + rows)
         self._exports.write_front(front)
@@ -287,6 +291,11 @@ class RunFolder:
     def _rewrite_calls(self, rows: Iterable[Replicate]) -> None:
         text = format_record(self._calls.columns) + "".join(map(self._calls.format, rows))
         write_atomically(self.evaluations_path, text)
+
+
+def _are_same(first: Sequence[Evaluation], second: Sequence[Evaluation]) -> bool:
+    """Tell whether two lists hold the same objects; equal ones will not do, for a standard error may be undefined."""
+    return len(first) == len(second) and all(a is b for a, b in zip(first, second, strict=True))
 
 
 def failures_at_end(evaluations: Sequence[Evaluation]) -> int:

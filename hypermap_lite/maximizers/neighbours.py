@@ -64,6 +64,8 @@ def neighbours(space: SearchSpace, x: FloatArray, axes: BoolArray) -> FloatArray
 
 def _tied_pairs(space: SearchSpace, axes: BoolArray) -> list[tuple[int, int]]:
     """Return the pairs of chosen axes that stand in one constraint."""
+    if not space.constraints:
+        return []
     chosen = [int(j) for j in np.flatnonzero(axes)]
     names = space.names
     return [

@@ -248,3 +248,16 @@ def test_front_has_a_confirmed_configuration_once_with_its_mean(tmp_path):
         first, second = rows_of(run.pareto_path)
         assert (first["trial"], first["reward"], first["cost"], first["replicates"]) == ("0", "3.0", "0.875", "4")
         assert second["trial"] == "1"
+
+
+def test_pareto_is_written_again_only_where_the_front_has_changed(tmp_path):
+    with folder(tmp_path) as run:
+        run.append_evaluation(evaluation(0, 1.0, 1.0))
+        run.write_pareto(only_if_changed=True)
+        before = run.pareto_path.stat().st_mtime_ns
+        run.append_evaluation(evaluation(1, 0.5, 2.0))  # dominated
+        run.write_pareto(only_if_changed=True)
+        assert run.pareto_path.stat().st_mtime_ns == before
+        run.append_evaluation(evaluation(2, 2.0, 0.5))
+        run.write_pareto(only_if_changed=True)
+        assert [row["trial"] for row in rows_of(run.pareto_path)] == ["2"]
