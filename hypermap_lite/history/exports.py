@@ -108,7 +108,7 @@ class Exports:
     def _rows(self, evaluations: Iterable[Evaluation]) -> Iterator[str]:
         for evaluation in evaluations:
             if evaluation.is_completed or (evaluation.state is State.INFEASIBLE and self._has_feasibility):
-                (fields,) = csv.reader(io.StringIO(self._form.format(evaluation), newline=""))
+                (fields,) = csv.reader(io.StringIO(self._form.format_once(evaluation), newline=""))
                 yield format_record(fields[: self._n_columns])
 
     def _complete(self, path: Path) -> None:

@@ -61,6 +61,7 @@ class HistoryFormat:
         self.space = space
         self.names = tuple(o.name for o in objectives)
         self.flags = flags_of(feasible_output)
+        self._formatted: dict[int, tuple[Evaluation, str]] = {}
         self._prior_columns = tuple(column for column in PRIOR_COLUMNS if column in prior_columns)
         self.columns: tuple[str, ...] = (
             *space.names,
@@ -92,6 +93,13 @@ class HistoryFormat:
                 evaluation.error,
             ]
         )
+
+    def format_once(self, evaluation: Evaluation) -> str:
+        """Return the same, made only once as long as the last evaluation of its trial is this object."""
+        known = self._formatted.get(evaluation.trial)
+        if known is None or known[0] is not evaluation:
+            known = self._formatted[evaluation.trial] = (evaluation, self.format(evaluation))
+        return known[1]
 
     def parse(self, record: Sequence[str]) -> Evaluation:
         """Return the evaluation that a record stands for."""

@@ -255,7 +255,7 @@ class RunFolder:
         if only_if_changed and self._front_written is not None and _are_same(front, self._front_written):
             return
         self._front_written = front
-        rows = "".join(map(self._history.format, front))
+        rows = "".join(map(self._history.format_once, front))
         write_atomically(self.pareto_path, format_record(self._history.columns) + rows)
         self._exports.write_front(front)
 

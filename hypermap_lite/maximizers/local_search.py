@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hypermap_lite.errors import ScenarioError
 from hypermap_lite.maximizers.base import (
     MaximizationProblem,
     Maximum,
@@ -27,8 +28,13 @@ class LocalSearch:
     starts: int = 4
     """Candidates that are refined."""
 
+    tolerance: float = 0.0
+    """A climb ends where a step gains less than this share of what the best candidate is above the median one, >= 0."""
+
     def __post_init__(self) -> None:
         check_options(self.candidates, self.starts)
+        if not 0 <= self.tolerance < 1:
+            raise ScenarioError("$.tolerance", f"the tolerance is {self.tolerance}", allowed="in [0, 1)")
 
     def maximize(self, problem: MaximizationProblem) -> Maximum | None:
         """Return the best new point found; None if the space holds no other."""
@@ -39,6 +45,8 @@ class LocalSearch:
         if problem.space.n_configurations <= self.candidates:
             return best_unseen(problem, X, scores)
         axes = np.ones(problem.space.dimension, dtype=bool)
-        refined, heights = climb(problem.space, problem.score, choose_starts(X, scores, self.starts), axes)
+        starts, finite = choose_starts(X, scores, self.starts), scores[np.isfinite(scores)]
+        above = float(finite.max() - np.median(finite)) if len(finite) else 0.0
+        refined, heights = climb(problem.space, problem.score, starts, axes, tolerance=self.tolerance * above)
         points = problem.space.snap(np.vstack([refined, X]))
         return best_unseen(problem, points, np.concatenate([heights, scores]))

@@ -98,9 +98,14 @@ def _short_steps(parameter: Parameter, code: float) -> FloatArray:
 
 
 def climb(
-    space: SearchSpace, score_of: Callable[[FloatArray], FloatArray], starts: FloatArray, axes: BoolArray
+    space: SearchSpace,
+    score_of: Callable[[FloatArray], FloatArray],
+    starts: FloatArray,
+    axes: BoolArray,
+    *,
+    tolerance: float = 0.0,
 ) -> tuple[FloatArray, FloatArray]:
-    """Move each start to its best one-exchange neighbour along the chosen axes until none is better.
+    """Move each start to its best one-exchange neighbour along the chosen axes until none is better by a tolerance.
 
     The climbs know nothing of each other; their neighbours are scored together, since a score of a few points costs
     little less than that of many.
@@ -113,6 +118,8 @@ def climb(
         Allowed points, shape (k, d).
     axes
         Those to step along, shape (d,).
+    tolerance
+        A climb ends where its best step gains no more.
 
     Returns
     -------
@@ -129,7 +136,9 @@ def climb(
         climbing = []
         for (i, points), there in zip(around.items(), scores, strict=True):
             best = int(np.argmax(there))
+            gain = there[best] - heights[i]
             if there[best] > heights[i]:
                 X[i], heights[i] = points[best], there[best]
-                climbing.append(i)
+                if not gain <= tolerance:
+                    climbing.append(i)
     return X, heights

@@ -68,3 +68,21 @@ def test_climbing_ends_at_the_top() -> None:
     (x,), (score,) = climb(SPACE, distance, start[None], np.array([False, True, True]))
     assert x == pytest.approx(target)
     assert score == pytest.approx(0.0)
+
+
+def test_a_climb_ends_where_its_best_step_gains_no_more_than_the_tolerance() -> None:
+    space = SearchSpace((RealParameter(name="x", low=0, high=1),))
+    calls = []
+
+    def hill(X: np.ndarray) -> np.ndarray:
+        calls.append(len(X))
+        return -((X[:, 0] - 0.6180339) ** 2)
+
+    start, axes = np.array([[0.1]]), np.array([True])
+    exact, _ = climb(space, hill, start, axes)
+    n_exact = len(calls)
+    rough, heights = climb(space, hill, start, axes, tolerance=1e-4)
+    assert abs(exact[0, 0] - 0.6180339) < 1e-3
+    assert abs(rough[0, 0] - 0.6180339) < 2e-2
+    assert len(calls) - n_exact < n_exact
+    assert heights[0] == hill(rough)[0]

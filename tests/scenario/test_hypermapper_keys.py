@@ -179,7 +179,7 @@ CASES = [
         "acquisition_function_optimizer",
         "cma_es",
         {"maximizer": {"type": "cma_es", "sigma": 0.2, "starts": 1}},
-        {"maximizer": {"type": "local_search", "candidates": 2000, "starts": 10}},
+        {"maximizer": {"type": "local_search", "candidates": 2000, "starts": 10, "tolerance": 0.01}},
     ),
     Case("local_search_starting_points", 3, {"maximizer.starts": 3}, {"maximizer.starts": 10}),
     Case("local_search_random_points", 500, {"maximizer.candidates": 500}, {"maximizer.candidates": 2000}),

@@ -12,6 +12,9 @@ from hypermap_lite.scenario.hypermapper.weighting import translate_weighting
 MAX_CANDIDATES: Final = 2000
 """Most configurations that the acquisition is maximized over before the local search."""
 
+TOLERANCE: Final = 1e-2
+"""Gain for which a climb goes on, relative to what the best candidate is above the median one."""
+
 ACQUISITIONS: Final = {
     "EI": "expected_improvement",
     "EI_PIBO": "expected_improvement",
@@ -156,6 +159,7 @@ def _translate_maximizer(draft: Draft) -> None:
     draft.set("maximizer.type", "local_search", key)
     draft.set("maximizer.candidates", min(points, MAX_CANDIDATES), "local_search_random_points")
     draft.set("maximizer.starts", reading["local_search_starting_points"], "local_search_starting_points")
+    draft.set("maximizer.tolerance", TOLERANCE, key)
     if points > MAX_CANDIDATES:
         draft.note("local_search_random_points", f"{MAX_CANDIDATES} evenly spread candidates, and some from the priors")
 
