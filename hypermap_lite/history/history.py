@@ -10,7 +10,7 @@ import numpy as np
 
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation
-from hypermap_lite.history.pooling import as_one, groups_of, key_of
+from hypermap_lite.history.pooling import as_one, groups_of, key_of, pooled
 from hypermap_lite.history.replicate_noise import shrunk_variances
 from hypermap_lite.objectives import Objective, values_of
 from hypermap_lite.space.search_space import SearchSpace
@@ -121,17 +121,18 @@ class History:
     def samples(self, n_rows: int | None = None) -> Samples:
         """Return the distinct completed configurations with all their replicates pooled.
 
-        Rows of one configuration are pooled whatever their phase; if one of them is not completed, the configuration
-        is left out.
+        What `pooled` counts as completed, with the rows of one configuration as one whatever their phase. So the
+        configurations are those that may be confirmed: one of which a row failed counts by its completed rows, and is
+        left out only once it was confirmed.
 
         Parameters
         ----------
         n_rows
             Look at the first so many rows only.
         """
-        rows = self._evaluations[:n_rows]
+        rows = [row for row in pooled(self._evaluations[:n_rows]) if row.is_completed]
         groups = groups_of(key_of(row.configuration) for row in rows)
-        known = [one for group in groups if (one := as_one([rows[i] for i in group])).is_completed]
+        known = [as_one([rows[i] for i in group]) for group in groups]
         names = [o.name for o in self.objectives]
         shape = (len(known), len(names))
         errors = np.array([[e.standard_errors.get(name, math.nan) for name in names] for e in known]).reshape(shape)

@@ -106,6 +106,12 @@ class BayesianOptimizer(Optimizer):
         """Return what the surrogate knows after the completed evaluations, of which there must be one."""
         return self.fitted()[0]
 
+    def has_model(self, n: int | None = None) -> bool:
+        """Tell whether the first n rows, all by default, are enough for a model: in what the surrogate is fitted to."""
+        if self._method.surrogate.noise_from_replicates:
+            return len(self.history.samples(n).X) >= MIN_COMPLETED
+        return sum(e.is_completed for e in list(self.history)[:n]) >= MIN_COMPLETED
+
     def fitted(self) -> tuple[Posterior, FloatArray]:
         """Return the `posterior`, and the points it was fitted to, shape (n, d)."""
         return self._models.posterior(), self._models.observed()[0]
@@ -118,7 +124,7 @@ class BayesianOptimizer(Optimizer):
             if rng.random() < self._method.epsilon:
                 return self._drawn_by(RandomSampling(), trial, rng)
         rng = generator(self._seed, Stream.SUGGESTION, trial)
-        has_objectives = len(self._models.observed()[0]) >= MIN_COMPLETED
+        has_objectives = self.has_model()
         feasibility = self._models.feasibility(searching=None if has_objectives else self.in_flight)
         guidance = self._guidance(trial)
         if has_objectives:
@@ -287,7 +293,7 @@ class BayesianOptimizer(Optimizer):
             model_budget=max(n_in_all, 1),
             history=list(self.history),
             first=len(self._initial),
-            evidence=self._models.evidence,
+            evidence=lambda n: self._models.evidence(n) if self.has_model(n) else None,
         )
 
     def _incumbents(self, context: AcquisitionContext) -> FloatArray:

@@ -36,5 +36,7 @@ def fitted(scenario: Scenario, history: History, optimizer: Optimizer | None = N
         bayesian = ComponentSpec(type="bayesian", path="$.optimizer")
         optimizer = build_optimizer(replace(scenario, optimizer=bayesian), history)
         assert isinstance(optimizer, BayesianOptimizer)
+    if not optimizer.has_model():
+        raise UsageError("the completed evaluations are of too few configurations that did not fail when confirmed")
     with single_threaded():
         return optimizer.posterior()

@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.history.history import History
+from hypermap_lite.history.pooling import pooled
 from hypermap_lite.objectives import Goal, Objective
 from hypermap_lite.space import RealParameter, SearchSpace
 
@@ -96,7 +99,32 @@ def test_repeated_rows_of_single_replicates_tell_of_noise() -> None:
     assert history.samples().noise_variance[:, 0] == pytest.approx([1.0, 2.0])
 
 
-def test_configuration_that_failed_once_is_no_sample() -> None:
+@pytest.mark.parametrize("states", ["CI", "IC", "CCF"])
+def test_sample_is_what_completed_of_an_earlier_configuration(states: str) -> None:
+    history = History(SPACE, OBJECTIVES)
+    for trial, state in enumerate(states):
+        earlier = Suggestion(trial=trial, configuration={"x": 1.0}, phase="earlier")
+        failed = Evaluation(suggestion=earlier, state=State.INFEASIBLE if state == "I" else State.FAILED)
+        history.append(sampled(trial, 1.0, [1, 2], "earlier") if state == "C" else failed)
+    assert history.samples().replicates.tolist() == [2 * states.count("C")]
+
+
+@given(
+    st.lists(
+        st.tuples(st.sampled_from([0.5, 1.0, 2.0]), st.sampled_from(State), st.sampled_from(["earlier", "confirm"]))
+    )
+)
+def test_samples_are_of_the_configurations_that_may_be_confirmed(rows: list[tuple[float, State, str]]) -> None:
+    history = History(SPACE, OBJECTIVES)
+    for trial, (x, state, phase) in enumerate(rows):
+        suggestion = Suggestion(trial=trial, configuration={"x": x}, phase=phase)
+        done = sampled(trial, x, [trial, 2 * trial], phase)
+        history.append(done if state is State.COMPLETED else Evaluation(suggestion=suggestion, state=state))
+    candidates = {e.configuration["x"] for e in pooled(history) if e.is_completed}
+    assert sorted(candidates) == sorted(e["x"] for e in SPACE.decode(history.samples().X))
+
+
+def test_configuration_whose_confirmation_failed_is_no_sample() -> None:
     history = History(SPACE, OBJECTIVES)
     failed = Suggestion(trial=1, configuration={"x": 1.0}, phase="confirm")
     history.extend([sampled(0, 1.0, [1, 2]), Evaluation(suggestion=failed, state=State.FAILED)])

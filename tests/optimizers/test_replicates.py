@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from hypermap_lite.assembly import build_history, build_optimizer
-from hypermap_lite.evaluation.outcome import Evaluation, State
+from hypermap_lite.errors import UsageError
+from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
+from hypermap_lite.reports import posterior_front
 from hypermap_lite.scenario.loader import load_scenario
 from tests.optimizers.runs import configurations, resumed, scenario_of, two_objectives
 
@@ -100,3 +102,46 @@ def test_checks_of_a_prior_are_the_same_when_they_are_made_again():
         trusts.append(asked.prior_trust)
         going.tell([sampled(asked)])
     assert min(trust for trust in trusts if trust is not None) < 1  # there were checks, and they said something
+
+
+MIXED = {"budget": {"evaluations": 16, "confirm_front": 4}, **POOLED}
+
+
+def with_earlier(rows, **changes):
+    """Return an optimizer after earlier rows: configurations, completed or infeasible."""
+    scenario = load_scenario(scenario_of(**MIXED, **changes))
+    history = build_history(scenario)
+    for trial, (a, is_completed) in enumerate(rows):
+        suggestion = Suggestion(trial=trial, configuration={"a": a, "b": 0.5}, phase="earlier")
+        infeasible = Evaluation(suggestion=suggestion, state=State.INFEASIBLE)
+        history.append(sampled(suggestion) if is_completed else infeasible)
+    return build_optimizer(scenario, history)
+
+
+def test_configuration_of_mixed_states_may_be_confirmed():
+    optimizer = with_earlier([(0.5, True), (0.5, False), (0.1, True), (0.3, True), (0.7, True), (0.9, True)])
+    while len(optimizer.history) < 16:
+        optimizer.tell([sampled(s) for s in optimizer.ask()])
+    assert [e.suggestion.phase for e in optimizer.history][12:] == ["confirm"] * 4
+
+
+def test_configurations_that_are_all_of_mixed_states_are_modelled():
+    optimizer = with_earlier(
+        [(0.2, True), (0.2, False), (0.6, True), (0.6, False)], design_of_experiment={"number_of_samples": 2}
+    )
+    (suggestion,) = optimizer.ask()
+    assert suggestion.phase == "model"
+    assert len(optimizer.fitted()[1]) == 2
+
+
+def test_run_whose_confirmations_all_failed_goes_on_without_a_model():
+    changes = {"design_of_experiment": {"number_of_samples": 2}, **POOLED}
+    budget = {"evaluations": 4, "confirm_front": 2}
+    optimizer = build_optimizer(load_scenario(scenario_of(budget=budget, **changes)))
+    optimizer.tell([sampled(s) for s in optimizer.ask(2)])
+    optimizer.tell([Evaluation(suggestion=s, state=State.FAILED, error="broken") for s in optimizer.ask(2)])
+    longer = scenario_of(budget={"evaluations": 8}, **changes)
+    (suggestion,) = resumed(longer, list(optimizer.history)).ask()
+    assert suggestion.phase == "random"
+    with pytest.raises(UsageError, match="too few configurations"):
+        posterior_front(load_scenario(longer), optimizer.history)
