@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
@@ -90,11 +91,17 @@ class Optimizer(ABC):
         if confirmation is None:
             return self._suggest(trial)
         if confirmation.is_due(trial):
+            if not confirmation.is_left(self.history, self.in_flight) and self._is_exhausted(trial):
+                return None
             return confirmation.suggestion(self.history, self.in_flight, trial) or self._suggest(trial)
         suggestion = self._suggest(trial)
         if suggestion is None and confirmation.is_left(self.history, self.in_flight):
             suggestion = confirmation.suggestion(self.history, self.in_flight, trial)
         return suggestion
+
+    def _is_exhausted(self, trial: int) -> bool:
+        """Tell whether a finite space holds no configuration that is new."""
+        return math.isfinite(self.history.space.n_configurations) and self._suggest(trial) is None
 
     def tell(self, evaluations: Sequence[Evaluation]) -> None:
         """Record finished evaluations of pending suggestions, in any order.

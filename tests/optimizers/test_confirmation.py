@@ -162,6 +162,30 @@ def test_small_space_is_explored_first_and_confirmed_then():
     assert (len(phases), phases[6:]) == (9, ["confirm"] * 3)
 
 
+def integer(high):
+    return {"a": {"parameter_type": "integer", "values": [0, high]}}
+
+
+def along_a(configuration):
+    return {"near": configuration["a"], "far": configuration["a"] ** 2}
+
+
+@pytest.mark.parametrize("optimizer", OPTIMIZERS)
+@pytest.mark.parametrize("batch", [1, 3])
+def test_space_that_ends_before_the_budget_is_confirmed_no_more_than_asked_for(optimizer, batch):
+    design = {"number_of_samples": 3}
+    scenario = scenario_of(optimizer=optimizer, input_parameters=integer(4), design_of_experiment=design, **CONFIRMING)
+    phases = [e.suggestion.phase for e in run(scenario, 12, batch=batch, function=along_a).history]
+    assert (len(phases), phases[5:]) == (9, ["confirm"] * 4)
+
+
+def test_finite_space_that_is_not_exhausted_is_confirmed_again_with_a_larger_budget():
+    whole = run(scenario_of(input_parameters=integer(40), **CONFIRMING), 12, function=along_a)
+    longer = scenario_of(input_parameters=integer(40), budget={"evaluations": 16, "confirm_front": 4})
+    (suggestion,) = resumed(longer, list(whole.history)).ask()
+    assert suggestion.phase == "confirm"
+
+
 def test_noisy_members_are_told_from_lucky_ones():
     """Of 20 equal configurations, the luckiest loses its place after it was repeated."""
     rng = np.random.default_rng(0)
