@@ -11,7 +11,7 @@ import logging
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 
 from hypermap_lite.errors import ClientError, NoValidEvaluationError, RepeatedFailureError
@@ -20,7 +20,7 @@ from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, FrontTracker, RunObserver, describe
-from hypermap_lite.evaluation.outcome import EARLIER, Evaluation, Replicate, State, Suggestion
+from hypermap_lite.evaluation.outcome import CONFIRM, EARLIER, Evaluation, Replicate, State, Suggestion
 from hypermap_lite.evaluation.racing import Race
 from hypermap_lite.evaluation.seeds import replicate_seed
 from hypermap_lite.history.run_folder import RunFolder
@@ -189,14 +189,24 @@ class Runner:
         return adopted
 
     def _with_recorded_configuration(self, suggestion: Suggestion) -> Suggestion:
-        recorded = self._recorded_configuration(suggestion.trial)
+        """Return the suggestion, or what is known of the one that was begun: no more than its configuration says."""
+        trial, rows = suggestion.trial, self.folder.evaluations
+        recorded = self._recorded_configuration(trial)
         if recorded is None or recorded == suggestion.configuration:
             return suggestion
         logger.warning(
-            "trial %d would now be %s, but %s has been evaluated and is kept (was the code or a library changed?)",
-            *(suggestion.trial, suggestion.configuration, recorded),
+            "trial %d would now be %s, but %s has been evaluated and is kept "
+            "(was the budget, the code or a library changed?)",
+            *(trial, suggestion.configuration, recorded),
         )
-        return replace(suggestion, configuration=recorded)
+        if trial < len(rows):
+            return rows[trial].suggestion
+        phase = suggestion.phase
+        if any(row.configuration == recorded for row in rows):  # nothing else repeats one
+            phase = CONFIRM
+        elif phase == CONFIRM:
+            phase = self.optimizer.phase_if_new(trial)
+        return Suggestion(trial=trial, configuration=recorded, phase=phase, seconds=suggestion.seconds)
 
     def _recorded_configuration(self, trial: int) -> Configuration | None:
         if trial < len(self.folder.evaluations):

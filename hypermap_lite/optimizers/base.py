@@ -9,6 +9,7 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cache
 from time import process_time
+from typing import Final
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -17,6 +18,9 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.confirmation import Confirmation
+
+RANDOM: Final = "random"
+"""Phase of a draw that no search step stands behind."""
 
 
 @cache
@@ -137,6 +141,12 @@ class Optimizer(ABC):
         """
         self._require_pending(suggestion.trial, "adopt")
         self._pending[suggestion.trial] = suggestion
+
+    def phase_if_new(self, trial: int) -> str:
+        """Return the phase of a trial that does not confirm an earlier one, though it may be time for that."""
+        with single_threaded():
+            suggestion = self._suggest(trial)
+        return RANDOM if suggestion is None else suggestion.phase
 
     def expect(self, suggestions: Sequence[Suggestion]) -> None:
         """Take up suggestions that an earlier session made and whose results are still to come."""

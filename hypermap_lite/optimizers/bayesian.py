@@ -21,7 +21,7 @@ from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem
 from hypermap_lite.objectives import reference_point_of
-from hypermap_lite.optimizers.base import Optimizer
+from hypermap_lite.optimizers.base import RANDOM, Optimizer
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
@@ -141,7 +141,7 @@ class BayesianOptimizer(Optimizer):
         new = X[space.unseen(X, taken)]
         if not len(new):
             return None
-        return Suggestion(trial=trial, configuration=space.decode(new[:1])[0], phase="random")
+        return Suggestion(trial=trial, configuration=space.decode(new[:1])[0], phase=RANDOM)
 
     def _with_model(
         self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None, guidance: Guidance

@@ -12,16 +12,13 @@ from hypermap_lite.design.prior_sampling import PriorSampling
 from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
-from hypermap_lite.optimizers.base import Optimizer
+from hypermap_lite.optimizers.base import RANDOM, Optimizer
 from hypermap_lite.optimizers.fitness import Fitness
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import FloatArray, Rng
-
-RANDOM = "random"
-"""Phase of a draw that no search step stands behind."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -226,6 +226,39 @@ def test_run_that_was_stopped_anywhere_ends_with_the_same_files(tmp_path, batch)
         assert files_of(tmp_path / str(n)) == files_of(tmp_path / "whole")
 
 
+def begun_and_resumed(document, folder, budget):
+    """Stop a run after the first of two calls of trial 7, and end it with another budget."""
+    document = {**document, "evaluator": {"replicates": 2}, "output": {"directory": str(folder)}}
+    calls = folder / "evaluations.csv"
+    run_scenario(
+        load_scenario(document), noisy, should_stop=lambda: calls.exists() and len(calls.read_text().split()) == 1 + 15
+    )
+    assert len(rows_of(calls)) == 15
+    run_scenario(load_scenario({**document, "budget": budget}), noisy)
+    return rows_of(folder / "history.csv")
+
+
+def test_repetition_that_was_begun_is_one_with_a_larger_budget(tmp_path):
+    document = scenario_of(budget={"evaluations": 10, "confirm_front": 3})
+    rows = begun_and_resumed(document, tmp_path, {"evaluations": 14, "confirm_front": 3})
+    assert [row["phase"] for row in rows] == ["design"] * 5 + ["model"] * 2 + ["confirm"] + ["model"] * 3 + [
+        "confirm"
+    ] * 3
+    assert (rows[7]["acquisition_value"], rows[7]["prior_weight"]) == ("", "")
+    for row in rows_of(tmp_path / "pareto.csv"):
+        same = [other for other in rows if (other["a"], other["b"]) == (row["a"], row["b"])]
+        assert int(row["replicates"]) == 2 * len(same)
+
+
+@pytest.mark.parametrize("optimizer", ["bayesian", "random_search", "cma_es"])
+def test_new_configuration_that_was_begun_is_no_repetition_with_a_smaller_budget(tmp_path, optimizer):
+    document = scenario_of(optimizer=optimizer, budget={"evaluations": 14, "confirm_front": 3})
+    rows = begun_and_resumed(document, tmp_path, {"evaluations": 10, "confirm_front": 3})
+    assert rows[7]["phase"] == rows[6]["phase"] != "confirm"
+    assert rows[7]["acquisition_value"] == ""
+    assert [row["phase"] for row in rows[8:]] == ["confirm"] * 2
+
+
 def test_repetition_has_seeds_of_its_own_and_the_front_the_mean_of_all(tmp_path):
     document = scenario_of(budget={"evaluations": 10, "confirm_front": 4}, evaluator={"replicates": 2})
     result = optimize(document, noisy, output_directory=tmp_path)
