@@ -129,7 +129,7 @@ def describe_front(run: Run, reference_point: Mapping[str, float] | None = None)
     from hypermap_lite.plotting.reference import common_reference_point
 
     n_front, n_completed = int(run.is_front.sum()), int(run.is_completed.sum())
-    size = f"{n_front} of {n_completed} completed evaluations on the front"
+    size = f"{n_front} of {n_completed} completed configurations on the front"
     if len(run.objectives) == 1 and not reference_point:
         return size
     reference = common_reference_point([run], reference_point)

@@ -38,7 +38,7 @@ def test_output_to_a_file_or_pipe_is_csv_and_the_hypervolume_goes_to_stderr(fold
     assert len(list(csv.DictReader(printed.out.splitlines()))) == 2
     # 1 x 1000 and 0.3 x 1765.44 beyond it
     assert printed.err == (
-        "2 of 3 completed evaluations on the front; hypervolume 1529.63 "
+        "2 of 3 completed configurations on the front; hypervolume 1529.63 "
         "(reference point: performance 0, safety -4000)\n"
     )
 
@@ -58,8 +58,17 @@ def test_terminal_shows_a_table_best_first_and_the_hypervolume(folder, capsys, m
 
 def test_one_objective_has_its_best_rows_and_no_hypervolume(tmp_path):
     run = load_run(write_run(tmp_path, [[2.0], [1.0], [1.0]], objectives=[{"name": "f"}]))
-    assert pareto.describe_front(run) == "2 of 3 completed evaluations on the front"
+    assert pareto.describe_front(run) == "2 of 3 completed configurations on the front"
     assert pareto.front_as_table(run).splitlines()[1].split() == ["1", "1", "0.1"]
+
+
+def test_rows_of_a_confirmed_configuration_count_once(tmp_path, capsys):
+    Y, configurations = [[1.0], [2.0], [4.0], [2.0]], [["0"], ["1"], ["0"], ["0"]]
+    folder = write_run(tmp_path, Y, objectives=[{"name": "f"}], configurations=configurations)
+    history = folder / "history.csv"
+    history.write_text(history.read_text().replace(",2,model,", ",2,confirm,"))
+    run_command(folder)
+    assert capsys.readouterr().err == "1 of 2 completed configurations on the front\n"
 
 
 def test_front_of_a_folder_that_cannot_be_written_is_printed_all_the_same(folder, capsys, monkeypatch):
