@@ -45,7 +45,9 @@ def lint(scenario: Scenario, space: SearchSpace | None = None) -> list[str]:
         *_constraints(space),
         *_budget(scenario, space),
         *_confirmation(scenario),
+        *_replicate_noise(scenario),
         *_workers(scenario),
+        *_parallel_options(scenario),
         *lint_command(scenario),
     ]
     return [f"{path}: {text}" for path, text in warnings]
@@ -199,6 +201,27 @@ def _confirmation(scenario: Scenario) -> Iterator[tuple[str, str]]:
         yield path, "a table answers the same each time; these evaluations bring nothing."
     elif n and scenario.surrogate.options.get("noise") is False:
         yield path, "the surrogate takes evaluations to be exact (noise is false); repeating them brings nothing."
+
+
+def _replicate_noise(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    options, path = scenario.surrogate.options, "$.surrogate.noise_from_replicates"
+    if not options.get("noise_from_replicates"):
+        return
+    if options.get("noise") is False:
+        yield path, "it does nothing: the surrogate takes evaluations to be exact (noise is false)."
+        return
+    has_repetitions = scenario.budget.confirm_front or scenario.earlier_evaluations
+    if scenario.evaluator.replicates == 1 and not has_repetitions:
+        yield path, "it does nothing: there is one replicate of each configuration, which tells of no noise."
+
+
+def _parallel_options(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    budget = scenario.budget
+    if budget.asynchronous and scenario.evaluator.workers == 1:
+        yield "$.budget.asynchronous", "it brings nothing: there is one worker (evaluator.workers)."
+    is_one_at_a_time = budget.batch_size == 1 and not budget.asynchronous
+    if scenario.optimizer.options.get("separation") and is_one_at_a_time:
+        yield "$.optimizer.separation", "it does nothing: one configuration is evaluated at a time."
 
 
 def _n_levels(parameter: ParameterSpec) -> float:

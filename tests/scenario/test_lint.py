@@ -210,3 +210,42 @@ def test_workers_without_work_are_named(evaluator: dict[str, Any], why: str) -> 
     expected = [f"$.evaluator.workers: they are not used: {why}."]
     assert warnings(budget=budget, evaluator=evaluator | {"workers": 2}) == expected
     assert warnings(budget=budget, evaluator=evaluator) == []
+
+
+POOLED = {"type": "gaussian_process", "noise_from_replicates": True}
+
+
+@pytest.mark.parametrize(
+    ("sections", "expected"),
+    [
+        ({}, ["$.surrogate.noise_from_replicates: it does nothing: there is one replicate"]),
+        ({"budget": {"confirm_front": 4}}, []),
+        ({"evaluator": {"replicates": 3}}, []),
+        ({"earlier_evaluations": "former.csv"}, []),
+        (
+            {"evaluator": {"replicates": 3}, "surrogate": {**POOLED, "noise": False}},
+            ["$.surrogate.noise_from_replicates: it does nothing: the surrogate takes evaluations to be exact"],
+        ),
+    ],
+)
+def test_noise_from_replicates_without_any_is_named(sections: dict[str, Any], expected: list[str]) -> None:
+    found = warnings(**{"surrogate": POOLED, **sections})
+    assert [text.split(" of each")[0].split(" (")[0] for text in found] == expected
+
+
+@pytest.mark.parametrize(
+    ("workers", "budget", "path"),
+    [
+        (1, {"asynchronous": True}, "$.budget.asynchronous: it brings nothing"),
+        (1, {"batch_size": 4}, None),
+        (4, {"asynchronous": True}, None),
+        (1, {}, "$.optimizer.separation: it does nothing"),
+    ],
+)
+def test_options_of_parallel_runs_are_named_where_nothing_is(
+    workers: int, budget: dict[str, Any], path: str | None
+) -> None:
+    optimizer = {"type": "bayesian", "separation": 0.05}
+    found = warnings(evaluator={"workers": workers}, budget=budget, optimizer=optimizer)
+    assert [text.split(":")[0] for text in found] == ([] if path is None else [path.split(":")[0]])
+    assert path is None or found[0].startswith(path)
