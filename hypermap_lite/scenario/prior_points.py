@@ -15,6 +15,7 @@ import numpy as np
 
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.objectives import Goal
+from hypermap_lite.scenario.confirmed_rows import NEEDED, with_confirmed_pooled
 from hypermap_lite.scenario.consistency import names_in
 from hypermap_lite.scenario.defaults import has_belief
 from hypermap_lite.scenario.messages import enumerate_names
@@ -75,6 +76,8 @@ def _read(
         raise ScenarioError("$.parameters", problem, allowed="one prior per parameter", hint="Drop the others.")
     try:
         table = _open(prior["file"], prior["rows"], folders)
+        if not _own_names(document).intersection(NEEDED):
+            table = with_confirmed_pooled(table)
         _require_columns(table, names)
         rows = _chosen(table, prior, document)
         values = _values(table, rows, {name: document["input_parameters"][name] for name in names})
@@ -114,11 +117,7 @@ def _chosen(table: Table, prior: Mapping[str, Any], document: Mapping[str, Any])
     if not table.records:
         raise ScenarioError("$", f"{table.name} has no rows below its header", allowed="at least one usable row")
     objectives = document["objectives"]
-    verdicts = _verdicts(
-        table,
-        {*document["input_parameters"], *(objective["name"] for objective in objectives)},
-        document["feasible_output"] or {},
-    )
+    verdicts = _verdicts(table, _own_names(document), document["feasible_output"] or {})
     if prior["rows"] == "all":
         return _require_some(table, verdicts)
     missing = [objective["name"] for objective in objectives if objective["name"] not in table.header]
@@ -133,6 +132,11 @@ def _chosen(table: Table, prior: Mapping[str, Any], document: Mapping[str, Any])
     rows = _require_some(table, verdicts)
     is_chosen = _best(Y[rows], prior["quantile"])
     return [k for k, keep in zip(rows, is_chosen, strict=True) if keep]
+
+
+def _own_names(document: Mapping[str, Any]) -> set[str]:
+    """Return the names of parameters and objectives: a column of one of them has no other meaning."""
+    return {*document["input_parameters"], *(objective["name"] for objective in document["objectives"])}
 
 
 def _verdicts(table: Table, own_names: set[str], feasible_output: Mapping[str, str]) -> list[str]:

@@ -94,6 +94,45 @@ def test_a_column_that_is_the_scenarios_own_says_nothing_of_feasibility() -> Non
     assert prior.options["points"] == {"Valid": [0, 1]}
 
 
+CONFIRMED = ("x,n,cost,gain,trial,phase,state,replicates,cost_sem,gain_sem", "1,1,1,1", "2,1,3,1", "1,1,9,1", "3,1,4,1")
+"""Of rows 0 and 2 the first is lucky; their mean, 5, is worse than all others."""
+
+
+def confirmed(phase: str = "confirm", state: str = "completed") -> dict[str, Any]:
+    phases, states = ["design", "design", phase, "model"], ["completed", "completed", state, "completed"]
+    header, *rows = CONFIRMED
+    ends = (f"{i},{p},{s},1,," for i, (p, s) in enumerate(zip(phases, states, strict=True)))
+    write(header=header, rows=tuple(f"{row},{end}" for row, end in zip(rows, ends, strict=True)))
+    return {"file": "a.csv", "parameters": ["x"]}
+
+
+def test_lucky_row_that_was_confirmed_counts_by_the_mean() -> None:
+    assert points(**confirmed(), rows="best", quantile=0.5) == {"x": [2, 3]}
+    assert points(**confirmed()) == {"x": [2]}
+    assert points(**confirmed("earlier")) == {"x": [1]}
+
+
+def test_configuration_that_was_confirmed_is_one_point() -> None:
+    assert points(**confirmed(), rows="all") == {"x": [1, 2, 3]}
+    assert points(**confirmed("earlier"), rows="all") == {"x": [1, 2, 1, 3]}
+
+
+def test_configuration_whose_confirmation_failed_is_no_point() -> None:
+    assert points(**confirmed(state="failed"), rows="all") == {"x": [2, 3]}
+
+
+def test_larger_samples_count_more_in_the_mean() -> None:
+    header, *_ = CONFIRMED
+    # The mean of ten replicates at 1 and one at 12 is 2, that of the other configuration 2.5.
+    rows = (
+        "1,1,1,1,0,design,completed,10,0.1,0",
+        "2,1,2.5,1,1,design,completed,1,,",
+        "1,1,12,1,2,confirm,completed,1,,",
+    )
+    write(header=header, rows=rows)
+    assert points(parameters=["x"]) == {"x": [1]}
+
+
 def test_rows_without_objective_values_do_not_count() -> None:
     write(header="x,cost,gain", rows=("1,,", "2,3,4", "3,nan,5", "4,inf,9"))
     assert points(parameters=["x"]) == {"x": [2]}
