@@ -6,7 +6,7 @@ recorded with that number: what a run asks after a stop, and what it has asked b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from hypermap_lite.history.csv_format import (
     read_records,
 )
 from hypermap_lite.history.files import append_durably, explained, truncate, write_atomically
-from hypermap_lite.history.rows import check_header
+from hypermap_lite.history.rows import PRIOR_COLUMNS, check_header
 from hypermap_lite.space.search_space import SearchSpace
 
 NAME = "suggestions.csv"
@@ -51,13 +51,14 @@ class SuggestionLog:
     def __init__(self, folder: Path, space: SearchSpace) -> None:
         self.path = folder / NAME
         self._space = space
-        self._columns = (
-            *space.names,
-            *("trial", "phase", "prior_weight", "acquisition_value", "suggest_seconds", "known"),
-        )
+        tail = ("acquisition_value", "suggest_seconds", "known")
+        self._former_columns = (*space.names, "trial", "phase", "prior_weight", *tail)
+        self._columns = (*space.names, "trial", "phase", "prior_weight", *PRIOR_COLUMNS, *tail)
 
     def read(self) -> list[Asked]:
         """Return all rows; a torn last one is dropped, for its calls had not begun.
+
+        A file from before there were `PRIOR_COLUMNS` gets them, empty, so that the next rows have a place for them.
 
         Raises
         ------
@@ -67,12 +68,16 @@ class SuggestionLog:
         records = read_records(self.path)
         if not records:
             return []
-        check_header(self.path, records[0], self._columns)
+        is_former = tuple(records[0]) == self._former_columns
+        check_header(self.path, records[0], self._former_columns if is_former else self._columns)
         with explained(self.path):
             content = self.path.read_bytes()
         if (end := complete_length(content)) < len(content):
             truncate(self.path, end)
-        return parse_rows(self.path, records, self._parse)
+        rows = parse_rows(self.path, records, self._parse)
+        if is_former:
+            self._write(rows)
+        return rows
 
     def append(self, asked: Asked) -> None:
         """Add a row; it is on the disk when this returns.
@@ -82,11 +87,13 @@ class SuggestionLog:
         RunFolderError
             If the file cannot be written.
         """
-        row = self._format(asked)
         if self.path.exists():
-            append_durably(self.path, row)
+            append_durably(self.path, self._format(asked))
         else:
-            write_atomically(self.path, format_record(self._columns) + row)
+            self._write([asked])
+
+    def _write(self, rows: Iterable[Asked]) -> None:
+        write_atomically(self.path, format_record(self._columns) + "".join(map(self._format, rows)))
 
     def _format(self, asked: Asked) -> str:
         suggestion = asked.suggestion
@@ -94,19 +101,23 @@ class SuggestionLog:
             [
                 *format_configuration(self._space, suggestion.configuration),
                 *(str(suggestion.trial), suggestion.phase),
-                *(format_number(suggestion.prior_weight), format_number(suggestion.acquisition_value)),
-                *(f"{suggestion.seconds:.6f}", str(asked.known)),
+                *(format_number(suggestion.prior_weight), format_number(suggestion.prior_trust), suggestion.prior_of),
+                *(format_number(suggestion.acquisition_value), f"{suggestion.seconds:.6f}", str(asked.known)),
             ]
         )
 
     def _parse(self, record: Sequence[str]) -> Asked:
         d = self._space.dimension
-        trial, phase, weight, acquisition, seconds, known = record[d:]
+        trial, phase, weight, *of_prior = record[d:-3]
+        trust, prior_of = of_prior or ("", "")
+        acquisition, seconds, known = record[-3:]
         suggestion = Suggestion(
             trial=int(trial),
             configuration=parse_configuration(self._space, record[:d]),
             phase=phase,
             prior_weight=float(weight) if weight else None,
+            prior_trust=float(trust) if trust else None,
+            prior_of=prior_of,
             acquisition_value=float(acquisition) if acquisition else None,
             seconds=float(seconds),
         )

@@ -3,6 +3,7 @@
 import csv
 import heapq
 from contextlib import closing
+from dataclasses import replace
 
 import pytest
 
@@ -161,6 +162,22 @@ def test_the_order_in_which_evaluations_finished_survives_a_stop(tmp_path):
     run(tmp_path, Workers(3, SLOW), n=9, optimizer=Watched(History(SPACE, OBJECTIVES, in_order=False)))
     assert before == [1, 3, 2, 5, 6]
     assert seen == [[1, 3, 2, 5, 6, 7]]
+
+
+def test_what_was_in_flight_keeps_the_part_of_the_prior_in_its_choice(tmp_path):
+    class Trusting(ScriptedOptimizer):
+        def _suggest(self, trial):
+            return replace(super()._suggest(trial), prior_weight=0.5, prior_trust=0.25, prior_of="g")
+
+    def trusting():
+        return Trusting(History(SPACE, OBJECTIVES, in_order=False))
+
+    with pytest.raises(Killed):
+        run(tmp_path, Workers(3, SLOW, killed_at=4), optimizer=trusting())
+    resumed = trusting()
+    run(tmp_path, Workers(3, SLOW), optimizer=resumed)
+    suggestions = [e.suggestion for e in resumed.history]
+    assert {(s.prior_weight, s.prior_trust, s.prior_of) for s in suggestions if s.trial in (0, 4)} == {(0.5, 0.25, "g")}
 
 
 def test_one_worker_asks_what_a_run_without_batches_asks(tmp_path):
