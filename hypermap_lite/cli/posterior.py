@@ -19,7 +19,7 @@ def execute(args: argparse.Namespace) -> int:
     """
     from hypermap_lite.assembly import build_history
     from hypermap_lite.history.files import write_atomically
-    from hypermap_lite.history.rows import read_history
+    from hypermap_lite.history.finishing_order import read_as_learnt
     from hypermap_lite.reports import posterior_front
     from hypermap_lite.scenario import load_scenario
 
@@ -34,7 +34,7 @@ def execute(args: argparse.Namespace) -> int:
         raise UsageError(f"{args.run}: --posterior needs a run folder, and there is no scenario.json in it")
     scenario = load_scenario(file)
     history = build_history(scenario)
-    history.extend(read_history(folder, history.space, history.objectives, scenario.feasible_output))
+    history.extend(read_as_learnt(folder, history, scenario.feasible_output))
     front = posterior_front(scenario, history)
     text = front.as_csv(history.space)
     n, n_completed = len(front.predictions), len(history.completed)

@@ -18,6 +18,7 @@ from hypermap_lite.evaluation.evaluator import EvaluationRequest
 from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.evaluation.racing import Race
 from hypermap_lite.evaluation.runner import Runner, StopReason
+from hypermap_lite.history.finishing_order import in_finishing_order
 from hypermap_lite.history.suggestions import Asked, SuggestionLog
 
 logger = logging.getLogger(__name__)
@@ -53,19 +54,14 @@ class AsynchronousRunner(Runner):
                 self._open[trial] = asked[trial]
             else:
                 self._ahead[trial] = summarize(asked[trial], done, max((row.timestamp for row in rows), default=0))
-        finished = sorted([*rows, *self._ahead.values()], key=self._order_of())
         if self.optimizer.history.in_order:
             self.optimizer.history.extend(rows)
             self.optimizer.expect([asked[trial] for trial in sorted({*self._open, *self._ahead})])
             self.optimizer.tell([*self._ahead.values()])
         else:
-            self.optimizer.history.extend(finished)
+            finished = [*rows, *self._ahead.values()]
+            self.optimizer.history.extend(in_finishing_order(finished, self.folder.trials_of_calls()))
             self.optimizer.expect([*self._open.values()])
-
-    def _order_of(self) -> _Order:
-        """Return the key by which configurations are sorted as they finished; those without calls came first."""
-        last_calls = {trial: k for k, (trial, _) in enumerate(self.folder.replicates)}
-        return _Order(last_calls)
 
     def _tidy_up(self) -> None:
         """Write the front; the order of the calls is left as it is, for it means something."""
@@ -125,13 +121,3 @@ class AsynchronousRunner(Runner):
     def _record_in_order(self) -> None:
         while (evaluation := self._ahead.pop(len(self.folder.evaluations), None)) is not None:
             self._record(evaluation)
-
-
-@dataclass(frozen=True, slots=True)
-class _Order:
-    """The place of a configuration among those that finished: that of its last call, then its trial."""
-
-    last_calls: dict[int, int]
-
-    def __call__(self, evaluation: Evaluation) -> tuple[int, int]:
-        return self.last_calls.get(evaluation.trial, -1), evaluation.trial

@@ -191,6 +191,10 @@ class RunFolder:
                     logger.warning("%s: the last line was cut off and is dropped: %r", path.name, content[end:][:80])
                 truncate(path, end)
 
+    def trials_of_calls(self) -> list[int]:
+        """Return the trial of each row of ``evaluations.csv``, in its order."""
+        return [trial for trial, _ in self.replicates]
+
     def append_replicate(self, replicate: Replicate) -> None:
         """Add a finished call of the black box to ``evaluations.csv``.
 

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
+from hypermap_lite.assembly import build_history
 from hypermap_lite.errors import HypermapLiteError
-from hypermap_lite.history.history import History
+from hypermap_lite.history.finishing_order import as_learnt
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.reports.parameter_importance import ParameterImportance, parameter_importance
@@ -33,8 +34,8 @@ def make_reports(scenario: Scenario, folder: RunFolder, optimizer: Optimizer | N
 
     One that fails is no failure of the run: a warning says why, unless nobody asked for it.
     """
-    history = History(folder.space, folder.objectives)
-    history.extend(folder.evaluations)
+    history = build_history(scenario)
+    history.extend(as_learnt(history, folder.evaluations, folder.trials_of_calls()))
     output = scenario.output
     importance = front = None
     if output.parameter_importance:

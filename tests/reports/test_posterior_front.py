@@ -91,6 +91,20 @@ def test_command_writes_the_file_of_the_run_again(tmp_path, capsys):
     assert f"{n} configurations on the posterior front, of 12 completed evaluations" in printed.err
 
 
+@pytest.mark.parametrize("optimizer", ["bayesian", "random_search"])
+def test_command_fits_an_asynchronous_run_in_the_order_in_which_it_learnt(tmp_path, capsys, optimizer):
+    scenario = {**SCENARIO, "optimizer": optimizer, "budget": {"evaluations": 12, "asynchronous": True}}
+    optimize(scenario, noisy, output_directory=tmp_path)
+    in_order = (tmp_path / "posterior_front.csv").read_text()
+    header, *calls = (tmp_path / "evaluations.csv").read_text().splitlines(keepends=True)
+    (tmp_path / "evaluations.csv").write_text(header + "".join(calls[::-1]))  # as if the first had taken longest
+    optimize(scenario, noisy, output_directory=tmp_path)
+    by_run = (tmp_path / "posterior_front.csv").read_text()
+    assert main(["pareto", str(tmp_path), "--posterior"]) == 0
+    assert capsys.readouterr().out == by_run == (tmp_path / "posterior_front.csv").read_text()
+    assert by_run != in_order
+
+
 @pytest.mark.parametrize(
     ("more", "problem"),
     [
