@@ -28,8 +28,9 @@ class Optimizer:
     scenario
         A scenario file, or its content as a mapping. Its evaluator is not used.
     evaluations
-        Trials of an earlier run to go on from, in order, as `read_history` returns them. If there are none, those of
-        the scenario's ``earlier_evaluations`` come first.
+        Trials of an earlier run to go on from, in order, as `read_history` returns them; with ``budget.asynchronous``
+        as they were told, and numbers that are missing, of what was pending, are asked for again. If there are none,
+        those of the scenario's ``earlier_evaluations`` come first.
     overrides
         Changes to the scenario, as in ``surrogate.type=random_forest``.
 

@@ -65,14 +65,16 @@ def test_nothing_told_means_an_empty_front() -> None:
     assert Optimizer(scenario_of()).pareto_front() == []
 
 
+ASYNCHRONOUS = {
+    "input_parameters": {"x": {"parameter_type": "real", "values": [0, 4]}},
+    "objectives": [{"name": "loss"}],
+    "design_of_experiment": {"number_of_samples": 4},
+    "budget": {"asynchronous": True},
+}
+
+
 def test_an_asynchronous_optimizer_learns_from_a_result_before_an_earlier_one_is_there() -> None:
-    scenario = {
-        "input_parameters": {"x": {"parameter_type": "real", "values": [0, 4]}},
-        "objectives": [{"name": "loss"}],
-        "design_of_experiment": {"number_of_samples": 4},
-        "budget": {"asynchronous": True},
-    }
-    optimizer = Optimizer(scenario)
+    optimizer = Optimizer(ASYNCHRONOUS)
     first, *others = optimizer.ask(4)
     for suggestion in others:
         optimizer.tell(suggestion, (suggestion.configuration["x"] - 1) ** 2)
@@ -83,3 +85,19 @@ def test_an_asynchronous_optimizer_learns_from_a_result_before_an_earlier_one_is
     assert [s.trial for s in optimizer.pending] == [0, 4]
     optimizer.tell(first, 1.0)
     assert [e.trial for e in optimizer.history] == [1, 2, 3, 0]
+
+
+@pytest.mark.parametrize("n", [3, 6])
+def test_an_asynchronous_optimizer_that_goes_on_asks_again_for_what_was_pending(n: int) -> None:
+    optimizer = Optimizer(ASYNCHRONOUS)
+    for suggestion in [s for s in optimizer.ask(n) if s.trial != 1]:
+        optimizer.tell(suggestion, suggestion.configuration["x"])
+    (pending,) = optimizer.pending
+    restored = Optimizer(ASYNCHRONOUS, evaluations=list(optimizer.history))
+    again, following = restored.ask(2)
+    assert (again.trial, again.configuration) == (1, pending.configuration)
+    assert following.trial == n
+    for suggestion in (following, again):
+        restored.tell(suggestion, suggestion.configuration["x"])
+    assert [e.trial for e in restored.history] == [0, *range(2, n), n, 1]
+    assert restored.ask()[0].trial == n + 1

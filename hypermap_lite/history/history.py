@@ -76,17 +76,28 @@ class History:
             If its trial number is not the next one (or, in any order, is there already), or it is not of this space and
             these objectives.
         """
+        if self.in_order and evaluation.trial != len(self):
+            raise UsageError(f"trial {evaluation.trial} cannot be recorded: the next trial is {len(self)}")
+        self.check(evaluation)
+        self._evaluations.append(evaluation)
+
+    def check(self, evaluation: Evaluation) -> None:
+        """Make sure that an evaluation can be added, now or when those of the trials before it are there.
+
+        Raises
+        ------
+        UsageError
+            If its trial is there already, or it is not of this space and these objectives.
+        """
         trial = evaluation.trial
-        if not self.in_order and any(e.trial == trial for e in self._evaluations):
+        is_there = trial < len(self) if self.in_order else any(e.trial == trial for e in self._evaluations)
+        if is_there:
             raise UsageError(f"trial {trial} cannot be recorded: it is there already")
-        if self.in_order and trial != len(self):
-            raise UsageError(f"trial {trial} cannot be recorded: the next trial is {len(self)}")
         if not self.space.contains(evaluation.configuration):
             raise UsageError(f"trial {trial} is not of this search space: {dict(evaluation.configuration)}")
         missing = [o.name for o in self.objectives if o.name not in evaluation.values]
         if evaluation.is_completed and missing:
             raise UsageError(f"trial {trial} has no value of the objective '{missing[0]}'")
-        self._evaluations.append(evaluation)
 
     def extend(self, evaluations: Iterable[Evaluation]) -> None:
         """Add several evaluations in order."""

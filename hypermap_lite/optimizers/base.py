@@ -77,7 +77,7 @@ class Optimizer(ABC):
             with single_threaded():
                 while len(suggestions) < n:
                     start = process_time()
-                    suggestion = self._next(len(self.history) + len(self.in_flight))
+                    suggestion = self._next(self._next_trial())
                     if suggestion is None:
                         break
                     suggestion = replace(suggestion, seconds=process_time() - start)
@@ -88,6 +88,14 @@ class Optimizer(ABC):
                 del self._pending[suggestion.trial]
             raise
         return suggestions
+
+    def _next_trial(self) -> int:
+        """Return the first free number; a history in any order may have gaps, left by what was pending at its end."""
+        n = len(self.history) + len(self.in_flight)
+        if self.history.in_order:
+            return n
+        taken = {*self._pending, *(e.trial for e in self.history)}
+        return next(trial for trial in range(n + 1) if trial not in taken)
 
     def _next(self, trial: int) -> Suggestion | None:
         """Return the suggestion of a trial; None if no configuration is left to explore, nor to confirm."""
@@ -116,12 +124,14 @@ class Optimizer(ABC):
         Raises
         ------
         UsageError
-            If a trial was never asked for, or was told before.
+            If a trial was never asked for, or was told before, or an evaluation does not fit the history. Then nothing
+            is recorded, and everything is still pending.
         """
         for i, evaluation in enumerate(evaluations):
             self._require_pending(evaluation.trial, "tell")
             if evaluation.trial in [other.trial for other in evaluations[:i]]:
                 raise UsageError(f"tell: trial {evaluation.trial} is told twice")
+            self.history.check(evaluation)
         for evaluation in evaluations:
             del self._pending[evaluation.trial]
             if self.history.in_order:

@@ -1,5 +1,7 @@
 """What holds for every optimizer."""
 
+from dataclasses import replace
+
 import pytest
 
 from hypermap_lite.assembly import build_optimizer
@@ -168,3 +170,15 @@ def test_an_ask_that_is_interrupted_leaves_nothing_behind(monkeypatch: pytest.Mo
 def test_asking_for_nothing_is_an_error(kind: str) -> None:
     with pytest.raises(UsageError, match="at least 1"):
         build_optimizer(load_scenario(scenario_of(optimizer=kind))).ask(0)
+
+
+@pytest.mark.parametrize("asynchronous", [False, True])
+def test_a_result_that_does_not_fit_leaves_everything_pending(asynchronous: bool) -> None:
+    optimizer = build_optimizer(load_scenario(scenario_of(budget={"asynchronous": asynchronous})))
+    good, bad = (evaluate(suggestion) for suggestion in optimizer.ask(2))
+    with pytest.raises(UsageError, match="trial 1 has no value of the objective 'far'"):
+        optimizer.tell([good, replace(bad, values={"near": 1.0})])
+    assert len(optimizer.history) == 0
+    assert [s.trial for s in optimizer.pending] == [0, 1]
+    optimizer.tell([good, bad])
+    assert [e.trial for e in optimizer.history] == [0, 1]
