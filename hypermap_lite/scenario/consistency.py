@@ -193,7 +193,10 @@ def _check_asynchronous(budget: Mapping[str, Any], evaluator: Mapping[str, Any])
         hint = "Drop evaluator.racing: its rivals are those of the time when a batch was suggested."
         raise ScenarioError(path, "replicates race", allowed=allowed, hint=hint)
     if budget["confirm_front"]:
-        hint = "Drop budget.confirm_front, or confirm the front of the finished run with asynchronous false."
+        hint = (
+            "Drop budget.confirm_front. A second run, with asynchronous false and the folder of this one as "
+            "earlier_evaluations, which count towards its budget, can confirm the front."
+        )
         raise ScenarioError(path, "the last evaluations confirm the front", allowed=allowed, hint=hint)
 
 

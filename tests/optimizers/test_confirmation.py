@@ -276,3 +276,17 @@ def test_repetition_has_seeds_of_its_own_and_the_front_the_mean_of_all(tmp_path)
         assert float(row["near"]) == pytest.approx(np.mean(sample))
         assert float(row["near_sem"]) == pytest.approx(np.std(sample, ddof=1) / np.sqrt(len(sample)))
     assert [values["near"] for _, values in result.pareto_front] == [float(row["near"]) for row in front]
+
+
+def test_a_second_run_confirms_the_front_of_an_asynchronous_one(tmp_path):
+    def two(configuration):
+        return {"near": configuration["a"] ** 2, "far": configuration["b"]}
+
+    first = scenario_of(budget={"evaluations": 8, "asynchronous": True})
+    optimize(first, two, output_directory=tmp_path / "first")
+    second = scenario_of(budget={"evaluations": 11, "confirm_front": 3}, earlier_evaluations=str(tmp_path / "first"))
+    result = optimize(second, two, output_directory=tmp_path / "second")
+    phases = [e.suggestion.phase for e in result.evaluations]
+    assert phases == ["earlier"] * 8 + ["confirm"] * 3
+    evaluated = [e.configuration for e in result.evaluations]
+    assert all(configuration in evaluated[:8] for configuration in evaluated[8:])

@@ -365,6 +365,10 @@ BAD: dict[str, Bad] = {
         changed("budget", {"asynchronous": True, "batch_size": 2}),
         ("$.budget.asynchronous", "batches of 2", "evaluator.workers"),
     ),
+    "asynchronous_confirmation": Bad(
+        changed("budget", {"asynchronous": True, "evaluations": 30, "confirm_front": 4}),
+        ("$.budget.asynchronous", "the last evaluations confirm the front", "A second run", "earlier_evaluations"),
+    ),
     "asynchronous_client": Bad(
         changed("budget", {"asynchronous": True})[:-1] + ', "evaluator": {"type": "client_server"}}',
         ("$.budget.asynchronous", "a client that answers batches"),
