@@ -228,7 +228,7 @@ def run_scenario(
 def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) -> Result:
     with runner.folder as folder, closing(runner.executor):  # workers end before the lock is released
         if retry_failed:
-            folder.set_failures_aside()
+            runner.set_failures_aside()
         if len(folder.evaluations) < scenario.budget.evaluations:
             folder.write_posterior_front(None)  # it is of an earlier end, and more rows will come
         for note in scenario.notes:

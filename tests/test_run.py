@@ -87,6 +87,23 @@ def test_failures_at_the_end_are_tried_again_on_demand(tmp_path):
     assert all(e.is_completed for e in after.evaluations)
 
 
+def test_asynchronous_run_that_is_mended_is_one_that_never_failed(tmp_path):
+    def broken(configuration, trial):
+        return two(configuration) if trial < 3 else {}
+
+    def mended(configuration, trial):
+        return two(configuration)
+
+    scenario = {key: value for key, value in SCENARIO.items() if key != "optimizer"}
+    changes = ["budget.asynchronous=true", "design_of_experiment.number_of_samples=3"]
+    whole = optimize(scenario, mended, output_directory=tmp_path / "whole", overrides=changes)
+    before = optimize(scenario, broken, output_directory=tmp_path / "run", overrides=changes)
+    after = optimize(scenario, mended, output_directory=tmp_path / "run", overrides=changes, retry_failed=True)
+    assert [e.is_completed for e in before.evaluations] == [True] * 3 + [False] * 3
+    assert before.evaluations[5].configuration != whole.evaluations[5].configuration
+    assert [e.configuration for e in after.evaluations] == [e.configuration for e in whole.evaluations]
+
+
 def test_best_of_one_objective_follows_its_direction(tmp_path):
     result = optimize(ONE, lambda c: c["x"], output_directory=tmp_path)
     configuration, values = result.best

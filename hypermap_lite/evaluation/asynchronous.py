@@ -9,6 +9,7 @@ first call (``suggestions.csv``). A run that goes on takes both up, evaluates wh
 from __future__ import annotations
 
 import logging
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -18,7 +19,7 @@ from hypermap_lite.evaluation.evaluator import EvaluationRequest
 from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.evaluation.racing import Race
 from hypermap_lite.evaluation.runner import Runner, StopReason
-from hypermap_lite.history.finishing_order import in_finishing_order
+from hypermap_lite.history.finishing_order import in_finishing_order, sorted_by_last_call
 from hypermap_lite.history.suggestions import Asked, SuggestionLog
 
 logger = logging.getLogger(__name__)
@@ -43,6 +44,30 @@ class AsynchronousRunner(Runner):
         super().__post_init__()
         self._race = Race.against((), self.folder.objectives, None, self.replicates)
         self._log = SuggestionLog(self.folder.path, self.folder.space)
+
+    def set_failures_aside(self) -> None:
+        """Have the last failures evaluated again, and forget what was asked in their knowledge and has no call."""
+        finished = self._finished_trials()
+        rows, calls = len(self.folder.evaluations), set(self.folder.replicates)
+        super().set_failures_aside()
+        gone = {trial for trial, _ in calls - set(self.folder.replicates)}
+        gone |= {*range(len(self.folder.evaluations), rows)}
+        if not gone:
+            return
+        known = next((n for n, trial in enumerate(finished) if trial in gone), len(finished))
+        begun = {trial for trial, _ in self.folder.replicates} | {e.trial for e in self.folder.evaluations}
+        asked = self._log.read()
+        is_kept = [a.known <= known or a.suggestion.trial in begun for a in asked]
+        self._log.keep(max((n for n, keep in enumerate(is_kept, start=1) if keep), default=0))
+
+    def _finished_trials(self) -> list[int]:
+        """Return the trials on disk with all their calls, in the order in which the optimizer was told of them."""
+        calls = self.folder.trials_of_calls()
+        rows = {e.trial for e in self.folder.evaluations}
+        if self.optimizer.history.in_order:
+            return sorted(rows)
+        finished = rows | {trial for trial, n in Counter(calls).items() if n >= self.replicates}
+        return sorted_by_last_call(finished, calls)
 
     def _tell_rows(self) -> None:
         """Tell the optimizer everything that is finished in the order in which it was, and what was being evaluated."""

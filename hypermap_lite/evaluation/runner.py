@@ -95,6 +95,10 @@ class Runner:
     def __post_init__(self) -> None:
         self._plan = self.plan or BatchPlan(size=self.budget.batch_size)
 
+    def set_failures_aside(self) -> None:
+        """Have the failures at the end of an earlier session evaluated again; call it before `run`."""
+        self.folder.set_failures_aside()
+
     def run(self) -> StopReason:
         """Evaluate until the budget, the time or the search space is used up, or a stop is asked for.
 

@@ -22,8 +22,22 @@ def in_finishing_order(evaluations: Iterable[Evaluation], trials: Iterable[int])
     trials
         The trial of every call, in the order in which calls ended: that of ``evaluations.csv``.
     """
-    last_calls = {trial: k for k, trial in enumerate(trials)}
-    return sorted(evaluations, key=lambda e: (last_calls.get(e.trial, -1), e.trial))
+    by_trial = {e.trial: e for e in evaluations}
+    return [by_trial[trial] for trial in sorted_by_last_call(by_trial, trials)]
+
+
+def sorted_by_last_call(trials: Iterable[int], calls: Iterable[int]) -> list[int]:
+    """Return trials in the order of their last calls, those without one first; of equals the lower one first.
+
+    Parameters
+    ----------
+    trials
+        In any order.
+    calls
+        The trial of every call, in the order in which calls ended.
+    """
+    last_calls = {trial: k for k, trial in enumerate(calls)}
+    return sorted(trials, key=lambda trial: (last_calls.get(trial, -1), trial))
 
 
 def as_learnt(history: History, evaluations: Sequence[Evaluation], trials: Iterable[int]) -> list[Evaluation]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.history.backups import keep_copies
 from hypermap_lite.history.csv_format import (
     complete_length,
     format_configuration,
@@ -91,6 +92,13 @@ class SuggestionLog:
             append_durably(self.path, self._format(asked))
         else:
             self._write([asked])
+
+    def keep(self, n: int) -> None:
+        """Drop all rows but the first n; the file as it was is kept as ``suggestions.csv.bak-N``."""
+        rows = self.read()
+        if n < len(rows):
+            keep_copies([self.path])
+            self._write(rows[:n])
 
     def _write(self, rows: Iterable[Asked]) -> None:
         write_atomically(self.path, format_record(self._columns) + "".join(map(self._format, rows)))

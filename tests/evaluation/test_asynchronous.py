@@ -62,8 +62,9 @@ def evaluate(request):
 
 def run(path, executor, *, evaluator=evaluate, n=8, runner=AsynchronousRunner, in_order=False, **options):
     optimizer = options.pop("optimizer", None) or ScriptedOptimizer(History(SPACE, OBJECTIVES, in_order=in_order))
+    retry_failed = options.pop("retry_failed", False)
     with folder(path) as open_folder, closing(executor):
-        return runner(
+        driver = runner(
             optimizer=optimizer,
             evaluator=evaluator,
             executor=executor,
@@ -71,7 +72,10 @@ def run(path, executor, *, evaluator=evaluate, n=8, runner=AsynchronousRunner, i
             budget=BudgetSpec(evaluations=n, asynchronous=True),
             seed=3,
             **options,
-        ).run()
+        )
+        if retry_failed:
+            driver.set_failures_aside()
+        return driver.run()
 
 
 def rows(path, name):
@@ -215,6 +219,40 @@ def test_failures_in_a_row_end_the_run(tmp_path):
     with pytest.raises(RepeatedFailureError, match="the last 3 configurations"):
         run(tmp_path, Workers(3), evaluator=fail, max_consecutive_failures=3)
     assert len(rows(tmp_path, "history.csv")) == 3
+
+
+@pytest.mark.parametrize("in_order", [False, True])
+@pytest.mark.parametrize("replicates", [1, 2])
+def test_failures_that_are_set_aside_leave_no_trace(tmp_path, in_order, replicates):
+    def unplugged(request):
+        return Outcome(state=State.FAILED, error="unplugged") if request.trial >= 3 else evaluate(request)
+
+    options = {"in_order": in_order, "replicates": replicates}
+    run(tmp_path / "whole", Workers(1), **options)
+    path = tmp_path / "mended"
+    with pytest.raises(RepeatedFailureError):
+        run(path, Workers(1), evaluator=unplugged, max_consecutive_failures=3, **options)
+    assert len(rows(path, "suggestions.csv")) == 6
+    assert run(path, Workers(1), retry_failed=True, **options) is StopReason.BUDGET
+    for name in ("history.csv", "evaluations.csv", "suggestions.csv", "pareto.csv"):
+        assert rows(path, name) == rows(tmp_path / "whole", name)
+    assert len((path / "suggestions.csv.bak-1").read_text().splitlines()) == 7
+
+
+def test_what_was_asked_without_knowledge_of_a_failure_or_has_a_call_stays(tmp_path):
+    def unplugged(request):
+        return Outcome(state=State.FAILED, error="unplugged") if request.trial in (2, 3) else evaluate(request)
+
+    with pytest.raises(Killed):  # finished: 1, 3, 2, 5; trial 4 knows of 1, trials 5 and more of a failure
+        run(tmp_path, Workers(3, SLOW, killed_at=4), evaluator=unplugged)
+    asked = rows(tmp_path, "suggestions.csv")
+    assert [row["known"] for row in asked] == ["0", "0", "0", "1", "2", "3", "4"]
+    run(tmp_path, Workers(3, SLOW), retry_failed=True, n=7)
+    assert rows(tmp_path, "suggestions.csv")[:6] == asked[:6]
+    (last,) = rows(tmp_path, "suggestions.csv")[6:]
+    assert last["trial"] == "6"
+    assert last["x"] != asked[6]["x"]
+    assert [row["state"] for row in rows(tmp_path, "history.csv")] == ["completed"] * 7
 
 
 def test_a_lost_record_of_the_questions_loses_no_evaluation(tmp_path):
