@@ -84,3 +84,9 @@ def reference_point_of(objectives: Sequence[Objective]) -> FloatArray | None:
     """Return the reference point to be minimized against, shape (m,), or None if an objective lacks one."""
     points = [o.sign * o.reference_point for o in objectives if o.reference_point is not None]
     return np.array(points) if len(points) == len(objectives) else None
+
+
+def stated_or(objectives: Sequence[Objective], inferred: FloatArray) -> FloatArray:
+    """Return the reference point to be minimized against, shape (m,): inferred where an objective states none."""
+    stated = [np.nan if o.reference_point is None else o.sign * o.reference_point for o in objectives]
+    return np.where(np.isnan(stated), inferred, stated)

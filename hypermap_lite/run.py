@@ -24,7 +24,7 @@ from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, RunObserver
 from hypermap_lite.evaluation.runner import Runner, StopReason
 from hypermap_lite.history.run_folder import RunFolder
-from hypermap_lite.objectives import Objective, reference_point_of, values_of
+from hypermap_lite.objectives import Objective, reference_point_of, stated_or, values_of
 from hypermap_lite.pareto import hypervolume, infer_reference_point
 from hypermap_lite.reports import ParameterImportance, PosteriorFront
 from hypermap_lite.reports.at_end import make_reports
@@ -329,6 +329,4 @@ def _reference_point(objectives: Sequence[Objective], Y: FloatArray) -> FloatArr
     stated = reference_point_of(objectives)
     if stated is not None:
         return stated
-    inferred = infer_reference_point(Y)
-    given = [np.nan if o.reference_point is None else o.sign * o.reference_point for o in objectives]
-    return np.where(np.isnan(given), inferred, given)
+    return stated_or(objectives, infer_reference_point(Y))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hypermap_lite.objectives import Goal, Objective, reference_point_of, to_minimization, values_of
+from hypermap_lite.objectives import Goal, Objective, reference_point_of, stated_or, to_minimization, values_of
 
 COST = Objective(name="cost", reference_point=5.0)
 SPEED = Objective(name="speed", goal=Goal.MAXIMIZE, reference_point=1.0)
@@ -20,3 +20,8 @@ def test_minimization_is_its_own_inverse() -> None:
 
 def test_a_missing_reference_point_leaves_none() -> None:
     assert reference_point_of((COST, Objective(name="speed"))) is None
+
+
+def test_a_reference_point_is_inferred_only_where_none_is_stated() -> None:
+    objectives = (Objective(name="f", goal=Goal.MAXIMIZE, reference_point=2.0), Objective(name="g"))
+    assert stated_or(objectives, np.array([7.0, 9.0])).tolist() == [-2.0, 9.0]

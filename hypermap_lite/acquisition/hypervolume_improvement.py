@@ -90,12 +90,7 @@ class HypervolumeImprovement:
             exact = LogGrowth.of(self.boxes, c.mean[:, tiny], c.std[:, tiny])
             score[tiny] = exact.score
             by_mean[:, tiny], by_std[:, tiny] = exact.slopes()
-        if len(c.mean) == 1:
-            by_mean = by_mean.sum(axis=0, keepdims=True)
-        if len(c.std) == 1:
-            by_std = by_std.sum(axis=0, keepdims=True)
-        assert c.pullback is not None
-        return score, c.pullback(by_mean, by_std)
+        return score, c.gradient(by_mean, by_std)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

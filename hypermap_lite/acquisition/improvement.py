@@ -155,12 +155,7 @@ class SampledImprovement:
         by_t = np.exp(log_improvement + log_sigmoid - log_softplus(t) - score - math.log(len(t))) / SMOOTHING
         by_sample = -by_t[..., None] * self.scalarization.gradient(samples, self.weights) / self.normalization.scale
         by_mean, by_std = by_sample, by_sample * self.normal[:, None, :]
-        if len(c.mean) == 1:
-            by_mean = by_mean.sum(axis=0, keepdims=True)
-        if len(c.std) == 1:
-            by_std = by_std.sum(axis=0, keepdims=True)
-        assert c.pullback is not None
-        return score, c.pullback(by_mean, by_std)
+        return score, c.gradient(by_mean, by_std)
 
 
 def log_sum_exp(terms: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.evaluation.outcome import Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem
-from hypermap_lite.objectives import reference_point_of
+from hypermap_lite.objectives import reference_point_of, stated_or
 from hypermap_lite.optimizers.base import RANDOM, Optimizer
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
@@ -108,9 +108,7 @@ class BayesianOptimizer(Optimizer):
 
     def has_model(self, n: int | None = None) -> bool:
         """Tell whether the first n rows, all by default, are enough for a model: in what the surrogate is fitted to."""
-        if self._method.surrogate.noise_from_replicates:
-            return len(self.history.samples(n).X) >= MIN_COMPLETED
-        return sum(e.is_completed for e in list(self.history)[:n]) >= MIN_COMPLETED
+        return len(self._models.observed(n)[0]) >= MIN_COMPLETED
 
     def fitted(self) -> tuple[Posterior, FloatArray]:
         """Return the `posterior`, and the points it was fitted to, shape (n, d)."""
@@ -276,8 +274,7 @@ class BayesianOptimizer(Optimizer):
         evaluated, foreseen = posterior.predict(self.history.X()).mean, posterior.predict(X)
         is_sure = (foreseen.std < SURE * np.ptp(evaluated[non_dominated(evaluated)], axis=0)).all(axis=1)
         inferred = infer_reference_point(np.vstack([evaluated, foreseen.mean[is_sure]]))
-        given = [np.nan if o.reference_point is None else o.sign * o.reference_point for o in self.history.objectives]
-        return np.where(np.isnan(given), inferred, given)
+        return stated_or(self.history.objectives, inferred)
 
     def _spread_points(self, rng: Rng) -> FloatArray:
         """Return allowed points all over the space, shape (n, d)."""
@@ -293,7 +290,7 @@ class BayesianOptimizer(Optimizer):
             model_budget=max(n_in_all, 1),
             history=list(self.history),
             first=len(self._initial),
-            evidence=lambda n: self._models.evidence(n) if self.has_model(n) else None,
+            evidence=self._models.evidence,
         )
 
     def _incumbents(self, context: AcquisitionContext) -> FloatArray:

@@ -68,8 +68,10 @@ class Models:
     def posterior(self) -> Posterior:
         """Return what is known of the objectives after the completed evaluations, of which there must be one."""
         n = len(self._history)
-        if self._posterior_of is None or self._posterior_of[0] != n:
-            self._posterior_of = (n, self._posterior_after(n))
+        # a row that did not complete changes what is pooled, and nothing else
+        rows = n if self._surrogate.noise_from_replicates else len(self._history.completed)
+        if self._posterior_of is None or self._posterior_of[0] != rows:
+            self._posterior_of = (rows, self._posterior_after(n))
         return self._posterior_of[1]
 
     def _posterior_after(self, n: int) -> Posterior:

@@ -53,6 +53,18 @@ class Conditional:
     pullback: Pullback | None = None
     """Carries gradients back to X; None if the surrogate has none."""
 
+    def gradient(self, by_mean: FloatArray, by_std: FloatArray) -> FloatArray:
+        """Return derivatives by X, shape (n, d), from those by mean and std in more scenarios than these may have.
+
+        Where all of them share a mean or a std, the derivatives, both (S, n, m), are summed.
+        """
+        assert self.pullback is not None
+        if len(self.mean) == 1:
+            by_mean = by_mean.sum(axis=0, keepdims=True)
+        if len(self.std) == 1:
+            by_std = by_std.sum(axis=0, keepdims=True)
+        return self.pullback(by_mean, by_std)
+
 
 Field = Callable[[FloatArray], Conditional]
 """Predictions as a function of X, shape (n, d)."""
