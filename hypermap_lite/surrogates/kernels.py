@@ -49,25 +49,45 @@ class MaternHammingKernel:
 
         By a coordinate: dk/da_j = -H (a_j - b_j) / l_j^2; by a lengthscale: dk/dlog(l_j) = H (a_j - b_j)^2 / l_j^2.
         """
-        r5 = SQRT5 * np.sqrt(self._squared_distances(A, B))
-        decay = np.exp(-r5)
+        # In place: memory that is asked for and given back again and again costs more than the arithmetic.
+        r5 = self._squared_distances(A, B)
+        np.sqrt(r5, out=r5)
+        r5 *= SQRT5
+        decay = np.negative(r5)
+        np.exp(decay, out=decay)
         hamming = self._hamming(A, B)
         if hamming is not None:
             decay *= hamming
-        H = (5.0 / 3.0) * (1.0 + r5) * decay
-        return (1.0 + r5 + r5 * r5 / 3.0) * decay, H
+        H = 1.0 + r5
+        K: FloatArray = np.square(r5, out=r5)
+        K /= 3.0
+        K += H
+        K *= decay
+        H *= 5.0 / 3.0
+        H *= decay
+        return K, H
 
     def _squared_distances(self, A: FloatArray, B: FloatArray) -> FloatArray:
-        scale = 1.0 / self.lengthscales[self.is_ordered]
-        a, b = A[:, self.is_ordered] * scale, B[:, self.is_ordered] * scale
+        ordered = slice(None) if self._has_order_only else self.is_ordered
+        scale = 1.0 / self.lengthscales[ordered]
+        b = np.asfortranarray(B[:, ordered]) * scale
         # The expanded square loses digits for close points, so it is centred first and floored at zero.
         centre = b.mean(axis=0) if len(b) else 0.0
-        a, b = a - centre, b - centre
-        squares = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1)[None, :] - 2.0 * (a @ b.T)
-        return np.maximum(squares, 0.0)
+        b -= centre
+        a = b.copy(order="F") if A is B else np.asfortranarray(A[:, ordered]) * scale - centre
+        rest = (b * b).sum(axis=1)
+        squares: FloatArray = (rest if A is B else (a * a).sum(axis=1))[:, None] + rest[None, :]
+        products = a @ b.T
+        products *= 2.0
+        squares -= products
+        return np.maximum(squares, 0.0, out=squares)
+
+    @property
+    def _has_order_only(self) -> bool:
+        return bool(self.is_ordered.all())
 
     def _hamming(self, A: FloatArray, B: FloatArray) -> FloatArray | None:
-        if self.is_ordered.all():
+        if self._has_order_only:
             return None
         exponent = np.zeros((len(A), len(B)))
         for c in np.flatnonzero(~self.is_ordered):

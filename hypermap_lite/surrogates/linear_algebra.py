@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg.lapack import dpotrf, dpotri, dtrtrs
 
 from hypermap_lite.typing import FloatArray
 
@@ -28,19 +28,38 @@ def safe_cholesky(K: FloatArray, smallest_jitter: float = 0.0) -> FloatArray | N
     """
     if not np.isfinite(K).all():
         return None
-    size = float(np.mean(np.diag(K))) or 1.0
     for jitter in JITTERS:
         if jitter < smallest_jitter:
             continue
-        shifted = K.copy()
-        shifted.flat[:: len(K) + 1] += jitter * size
-        try:
-            return np.asarray(cholesky(shifted, lower=True, check_finite=False))
-        except np.linalg.LinAlgError:
-            continue
+        shifted = K
+        if jitter:
+            shifted = K.copy()
+            shifted.flat[:: len(K) + 1] += jitter * (float(np.mean(np.diag(K))) or 1.0)
+        L, status = dpotrf(shifted, lower=1, clean=1)
+        if status == 0:
+            return np.asarray(L)
     return None
+
+
+def inverse_from_cholesky(L: FloatArray) -> FloatArray:
+    """Return (L L')^-1, shape (n, n), for a lower triangular L whose other half is zero."""
+    lower, status = dpotri(L, lower=1)
+    if status != 0:
+        half = solve_lower(L, np.eye(len(L)))
+        return half.T @ half
+    inverse: FloatArray = lower + lower.T
+    inverse.flat[:: len(L) + 1] = np.diag(lower)
+    return inverse
 
 
 def solve_lower(L: FloatArray, B: FloatArray, *, transposed: bool = False) -> FloatArray:
     """Return L^-1 B, or L^-T B, for a lower triangular L."""
-    return np.asarray(solve_triangular(L, B, lower=True, trans=1 if transposed else 0, check_finite=False))
+    if not B.size:
+        return np.zeros(B.shape)
+    if L.flags.f_contiguous:
+        X, status = dtrtrs(L, B, lower=1, trans=int(transposed))
+    else:  # LAPACK sees the transpose, without a copy
+        X, status = dtrtrs(L.T, B, lower=0, trans=int(not transposed))
+    if status != 0:
+        raise np.linalg.LinAlgError(f"row {status} of the triangular matrix has a zero on its diagonal")
+    return np.asarray(X)

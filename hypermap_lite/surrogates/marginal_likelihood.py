@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 import math
 from collections.abc import Sequence
@@ -9,11 +10,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs
 
 from hypermap_lite.surrogates.base import Permutations
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
-from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
+from hypermap_lite.surrogates.linear_algebra import inverse_from_cholesky, safe_cholesky
 from hypermap_lite.typing import BoolArray, FloatArray
 
 logger = logging.getLogger(__name__)
@@ -138,17 +138,22 @@ class HyperPrior:
 
     def penalty(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the negative log prior density (a constant left out) and its gradient by theta, shape (d + 2,)."""
-        lengthscale_mu, lengthscale_sigma = self.lengthscale_priors()
-        mu = np.array([*lengthscale_mu, 0.0, self.noise_mu])
-        sigma = np.array([*lengthscale_sigma, self.output_sigma, self.noise_sigma])
-        # A log-normal density has the factor 1/x besides the normal one of log x.
-        jacobian = np.array([*[1.0] * self.dimension, 0.0, 1.0])
+        mu, sigma, jacobian = self._log_densities()
         z = (theta - mu) / sigma
         value = 0.5 * z * z + jacobian * theta
         gradient = z / sigma + jacobian
         if not self.has_noise:
             value[-1], gradient[-1] = 0.0, 0.0
         return float(value.sum()), gradient
+
+    @functools.lru_cache(maxsize=16)  # noqa: B019  every step of a fit asks for it; a prior is small
+    def _log_densities(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return location and width of theta's normal densities, and theta's factor besides, each shape (d + 2,)."""
+        lengthscale_mu, lengthscale_sigma = self.lengthscale_priors()
+        mu = np.array([*lengthscale_mu, 0.0, self.noise_mu])
+        sigma = np.array([*lengthscale_sigma, self.output_sigma, self.noise_sigma])
+        # A log-normal density has the factor 1/x besides the normal one of log x.
+        return mu, sigma, np.array([*[1.0] * self.dimension, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,17 +205,6 @@ def constant_mean(K_inverse: FloatArray, y: FloatArray) -> float:
     """Return the generalized least-squares mean of correlated values."""
     weights = K_inverse.sum(axis=0)
     return float(weights @ y / weights.sum())
-
-
-def inverse_from_cholesky(L: FloatArray) -> FloatArray:
-    """Return (L L')^-1, shape (n, n)."""
-    (potri,) = get_lapack_funcs(("potri",), (L,))
-    inverse, status = potri(L, lower=1)
-    if status != 0:
-        half = solve_lower(L, np.eye(len(L)))
-        return half.T @ half
-    lower = np.tril(inverse)
-    return lower + np.tril(lower, -1).T
 
 
 def fit_hyperparameters(

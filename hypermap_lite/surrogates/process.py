@@ -9,12 +9,11 @@ import numpy as np
 
 from hypermap_lite.surrogates.base import NO_PERMUTATIONS, Permutations
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
-from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
+from hypermap_lite.surrogates.linear_algebra import inverse_from_cholesky, safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import (
     SMALLEST_KNOWN,
     Hyperparameters,
     constant_mean,
-    inverse_from_cholesky,
 )
 from hypermap_lite.typing import BoolArray, FloatArray
 

@@ -17,7 +17,6 @@ from hypermap_lite.surrogates.marginal_likelihood import (
     MarginalLikelihood,
     constant_mean,
     fit_hyperparameters,
-    inverse_from_cholesky,
 )
 
 
@@ -136,11 +135,6 @@ def test_data_that_cannot_be_fitted_leave_the_mode_of_the_prior(caplog: pytest.L
     h = fit_hyperparameters(broken, [HyperPrior(1).mode()])
     assert h.lengthscales == pytest.approx(HyperPrior(1).mode().lengthscales)
     assert "could not be fitted" in caplog.text
-
-
-def test_inverse_from_cholesky() -> None:
-    K = np.array([[2.0, 0.5], [0.5, 1.0]])
-    assert inverse_from_cholesky(np.linalg.cholesky(K)) == pytest.approx(np.linalg.inv(K))
 
 
 def known(n: int = 25) -> MarginalLikelihood:
