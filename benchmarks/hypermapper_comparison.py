@@ -138,7 +138,7 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, ...]]:
         found = [median(package, "quality") for package in PACKAGES]
         failed = [str(sum(row["package"] == package and row["error"] != "" for row in case)) for package in PACKAGES]
         yield (
-            *(scenario, model, str(len({row["seed"] for row in case}))),
+            *(scenario, model, str(len({int(row["seed"]) for row in case}))),
             *(f"{value:.3f}" for value in (*seconds, *cpu)),
             f"{cpu[0] / cpu[1]:.1f}",
             "regret" if ANSWERS[scenario].reference_point is None else "share of hypervolume",

@@ -21,6 +21,7 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.surrogate.lengthscale_location": json.dumps(math.sqrt(2.0)),
     "$.surrogate.lengthscale_width": json.dumps(math.sqrt(3.0)),
     "$.surrogate.noise_floor": "1e-06",
+    "$.surrogate.noise_tail": "2",
     "$.surrogate.restart": "true",
 }
 """Their places, and the values (as JSON) that scenarios without them are taken to have: those that change nothing."""

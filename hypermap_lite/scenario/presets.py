@@ -22,6 +22,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "type": "gaussian_process",
             "categorical_prior": False,
             "noise_floor": 1e-6,
+            "noise_tail": 2.0,
             "lengthscale_location": math.sqrt(2.0),
             "lengthscale_width": math.sqrt(3.0),
             "restart": True,

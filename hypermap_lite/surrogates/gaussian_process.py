@@ -54,6 +54,12 @@ class GaussianProcess:
     It limits how close to the optimum of a black box without noise the search can come.
     """
 
+    noise_tail: float = 5.0
+    """Width of the prior on the log of that variance below its most likely value, exp(-8), > 0; above it is 2.
+
+    The wider, the sooner a black box without noise is taken for one.
+    """
+
     lengthscale_location: float = -0.5
     """Mean of the prior on a log lengthscale in one dimension; 0.5 log(d) is added in d dimensions."""
 
@@ -70,6 +76,8 @@ class GaussianProcess:
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
             raise ScenarioError("$.noise_floor", f"the floor is {self.noise_floor}", allowed="a number > 0, at most 1")
+        if not 0 < self.noise_tail < math.inf:
+            raise ScenarioError("$.noise_tail", f"the width is {self.noise_tail}", allowed="a number > 0")
         if not math.isfinite(self.lengthscale_location):
             problem = f"the location is {self.lengthscale_location}"
             raise ScenarioError("$.lengthscale_location", problem, allowed="a finite number")
@@ -100,6 +108,7 @@ class GaussianProcess:
             permutations,
             has_noise=self.noise,
             noise_floor=self.noise_floor,
+            noise_tail=self.noise_tail,
             lengthscale_location=self.lengthscale_location,
             lengthscale_sigma=self.lengthscale_width,
         )

@@ -65,6 +65,28 @@ def test_penalty_is_the_negative_log_normal_density_up_to_a_constant() -> None:
     assert difference == pytest.approx(negative_log_density(a) - negative_log_density(b))
 
 
+@pytest.mark.parametrize("log_noise", [-20.0, -8.5, -8.0, -7.5, 0.0])
+def test_the_noise_prior_has_a_width_of_its_own_on_either_side_of_its_mode(log_noise: float) -> None:
+    prior, mode = HyperPrior(1, noise_tail=5.0), math.log(HyperPrior(1).mode().noise_variance)
+    at, at_mode = (np.array([0.3, 0.1, value]) for value in (log_noise, mode))
+    width = 5.0 if log_noise < mode else 2.0
+    assert prior.penalty(at)[0] - prior.penalty(at_mode)[0] == pytest.approx(0.5 * ((log_noise - mode) / width) ** 2)
+    assert prior.penalty(at)[1][-1] == pytest.approx((log_noise - mode) / width**2)
+
+
+def test_with_a_long_tail_an_objective_without_noise_is_sooner_taken_for_one() -> None:
+    X = np.random.default_rng(0).random((25, 2))
+    y = np.sin(3 * X[:, 0]) + X[:, 1] ** 2
+    short, long = (
+        GaussianProcess(noise_tail=tail).fit(
+            X, y[:, None], is_ordered=np.array([True, True]), rng=np.random.default_rng(0)
+        )
+        for tail in (2.0, 5.0)
+    )
+    noise = [posterior.hyperparameters[0].noise_variance for posterior in (short, long)]
+    assert noise[1] < 0.1 * noise[0]
+
+
 def test_lengthscale_prior_has_the_published_parameters() -> None:
     prior = HyperPrior(9)
     assert prior.lengthscale_mu == pytest.approx(math.sqrt(2) + math.log(3))
