@@ -291,6 +291,7 @@ def build_method(scenario: Scenario) -> Method:
         maximizer=build_member(MAXIMIZERS, scenario.maximizer, "maximizer"),
         fallback=PriorSampling(uniform_share=0.0),
         epsilon=scenario.optimizer.options.get("epsilon") or 0.0,
+        escapes=scenario.optimizer.options.get("escapes", 0),
         separation=scenario.optimizer.options.get("separation") or 0.0,
     )
 

@@ -12,6 +12,12 @@ from hypermap_lite.typing import Configuration
 EARLIER: Final = "earlier"
 """Phase of an evaluation that was made before the run, by somebody else."""
 
+MODEL: Final = "model"
+"""Phase of a suggestion that comes from the model."""
+
+RANDOM: Final = "random"
+"""Phase of a draw that no search step stands behind."""
+
 CONFIRM: Final = "confirm"
 """Phase of an evaluation that repeats a configuration to know its objectives better."""
 

@@ -15,13 +15,9 @@ import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from hypermap_lite.errors import UsageError
-from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
+from hypermap_lite.evaluation.outcome import RANDOM, Evaluation, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.confirmation import Confirmation
-
-RANDOM: Final = "random"
-"""Phase of a draw that no search step stands behind."""
-
 
 KEPT_NUMBERS: Final = 2_000_000
 """Size of the array that tells the C library how much memory to keep."""

@@ -17,15 +17,16 @@ from hypermap_lite.acquisition.feasibility_weighted import (
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.design.sobol import sobol_points
-from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.evaluation.outcome import MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem
 from hypermap_lite.objectives import reference_point_of, stated_or
-from hypermap_lite.optimizers.base import RANDOM, Optimizer
+from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.models import MIN_COMPLETED, Models
+from hypermap_lite.optimizers.stagnation import NEXT_TO_NOTHING, draws_at_end, stands_still
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.pareto.hypervolume import infer_reference_point
@@ -36,9 +37,6 @@ from hypermap_lite.scalarization.base import Normalization
 from hypermap_lite.surrogates.base import Posterior
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.typing import FloatArray, Rng
-
-MODEL = "model"
-"""Phase of a suggestion that comes from the model."""
 
 MAX_INCUMBENTS = 8
 """Best points whose surroundings are searched."""
@@ -54,9 +52,6 @@ MAX_SPREAD_DRAWS = 8192
 
 SURE = 0.1
 """Standard deviation, as a share of the front's range, below which a prediction may move the reference point."""
-
-NEXT_TO_NOTHING = math.log(1e-4)
-"""Log expected improvement, in normalized objectives, below which a trade-off counts as found."""
 
 
 class BayesianOptimizer(Optimizer):
@@ -144,11 +139,29 @@ class BayesianOptimizer(Optimizer):
     def _with_model(
         self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None, guidance: Guidance
     ) -> Suggestion | None:
+        """Return the best point by the model, or a draw where the search stands still."""
+        context = self._context(rng, feasibility)
+        suggestion = self._by_trade_off(context, trial, feasibility, guidance)
+        if suggestion is None or not self._leads_nowhere(context, suggestion):
+            return suggestion
+        design = self._method.fallback if guidance.weight else RandomSampling()
+        return self._drawn_by(design, trial, generator(self._seed, Stream.ESCAPE, trial)) or suggestion
+
+    def _leads_nowhere(self, context: AcquisitionContext, suggestion: Suggestion) -> bool:
+        """Tell whether it is time for a draw: the model has been of no use, and promises none by this suggestion."""
+        history = [e.suggestion for e in self.history]
+        if not stands_still(self.history) or draws_at_end([*history, *self.in_flight]) >= self._method.escapes:
+            return False
+        return len(self.history.objectives) == 1 or self._promise(context, suggestion) < NEXT_TO_NOTHING
+
+    def _by_trade_off(
+        self, context: AcquisitionContext, trial: int, feasibility: FeasibilityPosterior | None, guidance: Guidance
+    ) -> Suggestion | None:
         """Return the best point at a drawn trade-off; weights at which none promises anything may be drawn again."""
+        rng = context.rng
         has_weights = self._method.acquisition.is_scalarizing and len(self.history.objectives) > 1
         n_draws = 1 + self._method.weights.redraws * has_weights
         best: tuple[float, Suggestion] | None = None
-        context = self._context(rng, feasibility)
         for k in range(n_draws):
             if k:
                 context = replace(context, weights=self._weights(context.normalization, rng))

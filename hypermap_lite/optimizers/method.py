@@ -38,5 +38,8 @@ class Method:
     .. [1] Nardi, Koeplinger, Olukotun. Practical Design Space Exploration. MASCOTS 2019 (HyperMapper).
     """
 
+    escapes: int = 3
+    """Draws between two suggestions of a model that promises nothing and has found nothing; 0 for none."""
+
     separation: float = 0.0
     """Smallest distance to a configuration under evaluation, in the largest coordinate difference; 0 for any."""

@@ -10,9 +10,9 @@ import numpy as np
 
 from hypermap_lite.design.prior_sampling import PriorSampling
 from hypermap_lite.design.random_sampling import RandomSampling
-from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.evaluation.outcome import RANDOM, Suggestion
 from hypermap_lite.history.history import History
-from hypermap_lite.optimizers.base import RANDOM, Optimizer
+from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.fitness import Fitness
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.streams import Stream, generator

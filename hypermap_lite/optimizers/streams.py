@@ -20,6 +20,7 @@ class Stream(IntEnum):
     RESTART = 5
     PRIOR = 6
     TRUST = 7
+    ESCAPE = 8
     REPORT = 16
 
 

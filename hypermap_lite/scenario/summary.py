@@ -139,6 +139,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
     if epsilon := scenario.optimizer.options.get("epsilon"):
         lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
+    if escapes := scenario.optimizer.options.get("escapes"):
+        lines.append(f"  up to {escapes} drawn between one and the next where they stand still and promise nothing")
     if separation := scenario.optimizer.options.get("separation"):
         lines.append(f"  at least {separation:g} of a range away from what is under evaluation")
     lines += last

@@ -1,0 +1,50 @@
+"""A search by the model that has come to a standstill."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Final
+
+import numpy as np
+
+from hypermap_lite.evaluation.outcome import CONFIRM, MODEL, RANDOM, Suggestion
+from hypermap_lite.history.history import History
+from hypermap_lite.objectives import values_of
+
+PATIENCE: Final = 4
+"""So many suggestions of the model in a row add nothing to the front where a search stands still."""
+
+NEXT_TO_NOTHING: Final = math.log(1e-4)
+"""Log acquisition, in normalized objectives, below which a point promises nothing."""
+
+
+def stands_still(history: History) -> bool:
+    """Tell whether the model's last suggestions have added nothing to the front, `PATIENCE` of them.
+
+    With one objective that says little, for most steps towards a minimum overshoot; then it is so only as long as all
+    evaluations have the same value, from which nothing is learnt.
+    """
+    front: list[np.ndarray] = []
+    in_vain = 0
+    for evaluation in history:
+        suggestion = evaluation.suggestion
+        adds = False
+        if evaluation.is_completed:
+            y = np.array(values_of(history.objectives, evaluation.values))
+            adds = not any((known <= y).all() for known in front)
+            front.append(y)
+        if suggestion.phase == MODEL:
+            in_vain = 0 if adds else in_vain + 1
+    if len(history.objectives) == 1:
+        return len(front) > 0 and all(y[0] == front[0][0] for y in front)
+    return in_vain >= PATIENCE
+
+
+def draws_at_end(suggestions: Iterable[Suggestion]) -> int:
+    """Return how many of the last suggestions in a row were drawn and not from the model."""
+    n = 0
+    for suggestion in suggestions:
+        if suggestion.phase != CONFIRM:
+            n = n + 1 if suggestion.phase == RANDOM else 0
+    return n
