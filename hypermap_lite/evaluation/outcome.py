@@ -12,6 +12,9 @@ from hypermap_lite.typing import Configuration
 EARLIER: Final = "earlier"
 """Phase of an evaluation that was made before the run, by somebody else."""
 
+DESIGN: Final = "design"
+"""Phase of a point of the initial design."""
+
 MODEL: Final = "model"
 """Phase of a suggestion that comes from the model."""
 

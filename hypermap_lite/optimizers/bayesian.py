@@ -120,12 +120,23 @@ class BayesianOptimizer(Optimizer):
         has_objectives = self.has_model()
         feasibility = self._models.feasibility(searching=None if has_objectives else self.in_flight)
         guidance = self._guidance(trial)
+        if guidance.trust == 0.0 and self._lacks_draws():
+            drawn = self._drawn_by(RandomSampling(), trial, generator(self._seed, Stream.ESCAPE, trial))
+            if drawn is not None:
+                return replace(drawn, prior_weight=0.0, prior_trust=0.0, prior_of=guidance.belief.name)
         if has_objectives:
             return self._with_model(trial, rng, feasibility, guidance)
         if feasibility is not None:
             scorer = self._searching(feasibility, guidance)
             return self._by_score(scorer, self.history.X(), trial, rng, guidance)
         return self._drawn_by(self._method.fallback, trial, rng)
+
+    def _lacks_draws(self) -> bool:
+        """Tell whether draws all over the space are to make up for those that the design took from a dropped prior.
+
+        What the model knows is where that prior was; the search would go on from a quarter of a design.
+        """
+        return sum(s.phase == RANDOM for s in self._suggestions()) < self._initial.n_guided
 
     def _drawn_by(self, design: InitialDesign, trial: int, rng: Rng) -> Suggestion | None:
         """Return a new point of a design instead of one by the model; None if there is none."""
@@ -149,8 +160,7 @@ class BayesianOptimizer(Optimizer):
 
     def _leads_nowhere(self, context: AcquisitionContext, suggestion: Suggestion) -> bool:
         """Tell whether it is time for a draw: the model has been of no use, and promises none by this suggestion."""
-        history = [e.suggestion for e in self.history]
-        if not stands_still(self.history) or draws_at_end([*history, *self.in_flight]) >= self._method.escapes:
+        if not stands_still(self.history) or draws_at_end(self._suggestions()) >= self._method.escapes:
             return False
         return len(self.history.objectives) == 1 or self._promise(context, suggestion) < NEXT_TO_NOTHING
 
@@ -266,8 +276,11 @@ class BayesianOptimizer(Optimizer):
         Evaluations of an earlier experiment beyond the design count as such: a run that goes on from a file weighs the
         prior as one that never stopped.
         """
-        earlier = [*(e.suggestion for e in self.history), *self.in_flight]
-        return self._initial.n_beyond + sum(suggestion.phase == MODEL for suggestion in earlier)
+        return self._initial.n_beyond + sum(suggestion.phase == MODEL for suggestion in self._suggestions())
+
+    def _suggestions(self) -> list[Suggestion]:
+        """Return all suggestions so far, those under evaluation last."""
+        return [*(e.suggestion for e in self.history), *self.in_flight]
 
     def _ideal(self, posterior: Posterior, feasibility: FeasibilityPosterior, rng: Rng) -> FloatArray:
         """Return what each objective may come down to where points are allowed and probably feasible, shape (m,)."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.prior_sampling import UNIFORM, PriorSampling
-from hypermap_lite.evaluation.outcome import EARLIER, Suggestion
+from hypermap_lite.evaluation.outcome import DESIGN, EARLIER, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.priors.product import ProductPrior
@@ -136,6 +136,12 @@ class InitialPhase:
         """Return the trial at which the initial phase ends: earlier evaluations and points of the design."""
         return self.n_earlier + len(self.configurations)
 
+    @property
+    def n_guided(self) -> int:
+        """Number of points of the design that are draws from a prior, where others are not."""
+        first = self.n_earlier
+        return sum(bool(self.suggestion(trial).prior_weight) for trial in range(first, len(self)))
+
     def suggestion(self, trial: int) -> Suggestion:
         """Return the suggestion of one of the first trials that are not those of an earlier experiment."""
         configuration = self.configurations[trial - self.n_earlier]
@@ -143,7 +149,7 @@ class InitialPhase:
         x = self._space.encode([configuration])
         if is_first and self._starts_with_default(x):
             return Suggestion(trial=trial, configuration=configuration, phase="default")
-        suggestion = Suggestion(trial=trial, configuration=configuration, phase="design")
+        suggestion = Suggestion(trial=trial, configuration=configuration, phase=DESIGN)
         origin = self._origins.get(self._space.keys(x)[0])
         if origin is None:
             return suggestion

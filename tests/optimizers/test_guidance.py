@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hypermap_lite.assembly import build_optimizer
+from hypermap_lite.evaluation.outcome import DESIGN, RANDOM
 from hypermap_lite.scenario.loader import load_scenario
 from tests.optimizers.runs import configurations, evaluate, fail, resumed, run, scenario_of
 
@@ -72,6 +73,17 @@ def test_a_misleading_prior_is_halved_twice_and_dropped_and_the_history_says_so(
     halved = next(s for s in suggestions(optimizer)[8:] if s.prior_weight)
     n = 1 + suggestions(optimizer)[8:].index(halved)
     assert halved.prior_weight == pytest.approx(halved.prior_trust * 2.2 / n)
+
+
+def test_draws_all_over_the_space_make_up_for_those_from_a_dropped_prior() -> None:
+    chosen = suggestions(run(believing(0.95), 32, function=valley))
+    guided = sum(s.phase == DESIGN and bool(s.prior_weight) for s in chosen)
+    first = next(i for i, s in enumerate(chosen) if s.prior_trust == 0)
+    drawn = chosen[first : first + guided]
+    assert guided == 6
+    assert {(s.phase, s.prior_weight, s.prior_trust) for s in drawn} == {(RANDOM, 0.0, 0.0)}
+    assert np.ptp([s.configuration["a"] for s in drawn]) > 0.4
+    assert RANDOM not in {s.phase for s in (*chosen[:first], *chosen[first + guided :])}
 
 
 def test_a_good_prior_is_kept() -> None:
