@@ -10,7 +10,6 @@ import numpy as np
 
 from hypermap_lite.evaluation.outcome import CONFIRM, MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
-from hypermap_lite.objectives import values_of
 
 PATIENCE: Final = 4
 """So many suggestions of the model in a row add nothing to the front where a search stands still."""
@@ -25,20 +24,17 @@ def stands_still(history: History) -> bool:
     With one objective that says little, for most steps towards a minimum overshoot; then it is so only as long as all
     evaluations have the same value, from which nothing is learnt.
     """
-    front: list[np.ndarray] = []
-    in_vain = 0
-    for evaluation in history:
-        suggestion = evaluation.suggestion
-        adds = False
-        if evaluation.is_completed:
-            y = np.array(values_of(history.objectives, evaluation.values))
-            adds = not any((known <= y).all() for known in front)
-            front.append(y)
-        if suggestion.phase == MODEL:
-            in_vain = 0 if adds else in_vain + 1
+    Y = history.Y()
     if len(history.objectives) == 1:
-        return len(front) > 0 and all(y[0] == front[0][0] for y in front)
-    return in_vain >= PATIENCE
+        return len(Y) > 0 and float(np.ptp(Y)) == 0.0
+    chosen: list[tuple[int, bool]] = []
+    n = 0
+    for evaluation in history:
+        if evaluation.suggestion.phase == MODEL:
+            chosen.append((n, evaluation.is_completed))
+        n += evaluation.is_completed
+    added = [is_completed and not (Y[:k] <= Y[k]).all(axis=1).any() for k, is_completed in chosen[-PATIENCE:]]
+    return len(added) == PATIENCE and not any(added)
 
 
 def draws_at_end(suggestions: Iterable[Suggestion]) -> int:
