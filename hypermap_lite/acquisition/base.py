@@ -97,6 +97,11 @@ class PriorWeighting(Protocol):
         """Whether the prior is checked against the evaluations, and loses its weight where it misleads."""
         ...
 
+    @property
+    def make_up(self) -> bool:
+        """Whether uniform draws make up for those that the design took from a prior that is dropped."""
+        ...
+
     def weight(self, n: int, model_budget: int) -> float:
         """Return the exponent of the prior at the n-th model-based suggestion, n >= 1, of a budget of so many."""
         ...

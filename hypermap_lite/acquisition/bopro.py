@@ -57,6 +57,9 @@ class Bopro:
     safeguard: bool = True
     """Whether the prior is checked against the evaluations, and loses its weight where it misleads."""
 
+    make_up: bool = True
+    """Whether uniform draws make up for those that the design took from a prior that is dropped."""
+
     def __post_init__(self) -> None:
         check_prior_free(self.prior_free)
         if not self.model_weight > 0:

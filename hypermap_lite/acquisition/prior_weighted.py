@@ -41,6 +41,9 @@ class Pibo:
     safeguard: bool = True
     """Whether the prior is checked against the evaluations, and loses its weight where it misleads."""
 
+    make_up: bool = True
+    """Whether uniform draws make up for those that the design took from a prior that is dropped."""
+
     def __post_init__(self) -> None:
         check_prior_free(self.prior_free)
         if self.beta is not None and not self.beta >= 0:

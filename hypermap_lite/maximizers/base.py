@@ -79,12 +79,17 @@ class MaximizationProblem:
 
     def is_apart(self, X: FloatArray) -> BoolArray:
         """Tell which of n points keep their distance from all that are pending, shape (n,)."""
-        if self.pending is None or not self.separation or not len(self.pending):
-            return np.ones(len(X), dtype=bool)
-        steps = np.abs(X[:, None, :] - self.pending[None, :, :])
-        needed = np.where(self.space.is_ordered, self.separation, np.finfo(float).tiny)
-        is_far: BoolArray = np.any(steps >= needed, axis=2)
-        return np.all(is_far, axis=1)
+        return are_apart(self.space, X, self.pending, self.separation)
+
+
+def are_apart(space: SearchSpace, X: FloatArray, pending: FloatArray | None, separation: float) -> BoolArray:
+    """Tell which of n points keep the distance `separation` from all that are pending, shape (n,)."""
+    if pending is None or not separation or not len(pending):
+        return np.ones(len(X), dtype=bool)
+    steps = np.abs(X[:, None, :] - pending[None, :, :])
+    needed = np.where(space.is_ordered, separation, np.finfo(float).tiny)
+    is_far: BoolArray = np.any(steps >= needed, axis=2)
+    return np.all(is_far, axis=1)
 
 
 def _numbers(scores: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.evaluation.outcome import MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
-from hypermap_lite.maximizers.base import MaximizationProblem
+from hypermap_lite.maximizers.base import MaximizationProblem, are_apart
 from hypermap_lite.objectives import reference_point_of, stated_or
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.guidance import Guidance, Guide
@@ -120,10 +120,10 @@ class BayesianOptimizer(Optimizer):
         has_objectives = self.has_model()
         feasibility = self._models.feasibility(searching=None if has_objectives else self.in_flight)
         guidance = self._guidance(trial)
-        if guidance.trust == 0.0 and self._lacks_draws():
-            drawn = self._drawn_by(RandomSampling(), trial, generator(self._seed, Stream.ESCAPE, trial))
+        if guidance.trust == 0.0 and self._lacks_draws(trial):
+            drawn = self._drawn_anywhere(trial, guidance)
             if drawn is not None:
-                return replace(drawn, prior_weight=0.0, prior_trust=0.0, prior_of=guidance.belief.name)
+                return drawn
         if has_objectives:
             return self._with_model(trial, rng, feasibility, guidance)
         if feasibility is not None:
@@ -131,38 +131,59 @@ class BayesianOptimizer(Optimizer):
             return self._by_score(scorer, self.history.X(), trial, rng, guidance)
         return self._drawn_by(self._method.fallback, trial, rng)
 
-    def _lacks_draws(self) -> bool:
+    def _lacks_draws(self, trial: int) -> bool:
         """Tell whether draws all over the space are to make up for those that the design took from a dropped prior.
 
-        What the model knows is where that prior was; the search would go on from a quarter of a design.
+        What the model knows is where that prior was; the search would go on from a quarter of a design. Late in a run
+        it does so all the same.
         """
-        return sum(s.phase == RANDOM for s in self._suggestions()) < self._initial.n_guided
+        weighting = self._method.prior_weighting
+        if weighting is None or not weighting.make_up:
+            return False
+        made = sum(s.phase == RANDOM and s.prior_weight == 0 for s in self._suggestions())
+        return 0 < self._initial.n_guided - made <= (self._budget - trial) / 2
+
+    def _drawn_anywhere(self, trial: int, guidance: Guidance) -> Suggestion | None:
+        """Return a uniform draw in place of a suggestion without a prior, with what the history says of that."""
+        drawn = self._drawn_by(RandomSampling(), trial, generator(self._seed, Stream.ESCAPE, trial))
+        if drawn is None:
+            return None
+        return replace(drawn, prior_weight=guidance.weight, prior_trust=guidance.trust, prior_of=guidance.belief.name)
 
     def _drawn_by(self, design: InitialDesign, trial: int, rng: Rng) -> Suggestion | None:
-        """Return a new point of a design instead of one by the model; None if there is none."""
+        """Return a new point of a design instead of one by the model, if possible apart from pending ones; or None."""
         space, taken = self.history.space, self.taken_keys()
         X = design.points(space, self._prior, len(taken) + 1, rng)
         new = X[space.unseen(X, taken)]
         if not len(new):
             return None
+        if (is_apart := are_apart(space, new, self._pending_points(), self._method.separation)).any():
+            new = new[is_apart]
         return Suggestion(trial=trial, configuration=space.decode(new[:1])[0], phase=RANDOM)
 
     def _with_model(
         self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None, guidance: Guidance
     ) -> Suggestion | None:
         """Return the best point by the model, or a draw where the search stands still."""
-        context = self._context(rng, feasibility)
-        suggestion = self._by_trade_off(context, trial, feasibility, guidance)
-        if suggestion is None or not self._leads_nowhere(context, suggestion):
+        suggestion = self._by_trade_off(self._context(rng, feasibility), trial, feasibility, guidance)
+        if suggestion is None or guidance.weight or not self._leads_nowhere(suggestion, feasibility):
             return suggestion
-        design = self._method.fallback if guidance.weight else RandomSampling()
-        return self._drawn_by(design, trial, generator(self._seed, Stream.ESCAPE, trial)) or suggestion
+        return self._drawn_anywhere(trial, guidance) or suggestion
 
-    def _leads_nowhere(self, context: AcquisitionContext, suggestion: Suggestion) -> bool:
+    def _leads_nowhere(self, suggestion: Suggestion, feasibility: FeasibilityPosterior | None) -> bool:
         """Tell whether it is time for a draw: the model has been of no use, and promises none by this suggestion."""
         if not stands_still(self.history) or draws_at_end(self._suggestions()) >= self._method.escapes:
             return False
-        return len(self.history.objectives) == 1 or self._promise(context, suggestion) < NEXT_TO_NOTHING
+        if len(self.history.objectives) == 1:
+            return True
+        promise = suggestion.acquisition_value
+        if promise is None or not self._method.acquisition.is_logarithmic:
+            return False
+        if feasibility is not None and self._method.feasibility_weighting is not None:
+            x = self.history.space.encode([suggestion.configuration])
+            log_probability = float(feasibility.log_probability(x)[0])
+            promise -= self._method.feasibility_weighting.exponent * log_probability
+        return promise < NEXT_TO_NOTHING
 
     def _by_trade_off(
         self, context: AcquisitionContext, trial: int, feasibility: FeasibilityPosterior | None, guidance: Guidance
@@ -231,7 +252,7 @@ class BayesianOptimizer(Optimizer):
                 incumbents=incumbents,
                 seen=self.taken_keys(),
                 rng=rng,
-                pending=space.encode([s.configuration for s in self.in_flight]),
+                pending=self._pending_points(),
                 separation=self._method.separation,
             )
         )
@@ -261,7 +282,7 @@ class BayesianOptimizer(Optimizer):
             posterior=posterior,
             X=X,
             Y=Y,
-            X_pending=self.history.space.encode([s.configuration for s in self.in_flight]),
+            X_pending=self._pending_points(),
             scalarization=self._method.scalarization,
             weights=self._weights(normalization, rng),
             normalization=normalization,
@@ -277,6 +298,10 @@ class BayesianOptimizer(Optimizer):
         prior as one that never stopped.
         """
         return self._initial.n_beyond + sum(suggestion.phase == MODEL for suggestion in self._suggestions())
+
+    def _pending_points(self) -> FloatArray:
+        """Return the configurations under evaluation, shape (p, d)."""
+        return self.history.space.encode([s.configuration for s in self.in_flight])
 
     def _suggestions(self) -> list[Suggestion]:
         """Return all suggestions so far, those under evaluation last."""

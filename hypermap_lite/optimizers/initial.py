@@ -10,6 +10,7 @@ from itertools import takewhile
 import numpy as np
 
 from hypermap_lite.design.base import InitialDesign
+from hypermap_lite.design.latin_hypercube import PriorLatinHypercube
 from hypermap_lite.design.prior_sampling import UNIFORM, PriorSampling
 from hypermap_lite.evaluation.outcome import DESIGN, EARLIER, Suggestion
 from hypermap_lite.history.history import History
@@ -138,9 +139,11 @@ class InitialPhase:
 
     @property
     def n_guided(self) -> int:
-        """Number of points of the design that are draws from a prior, where others are not."""
-        first = self.n_earlier
-        return sum(bool(self.suggestion(trial).prior_weight) for trial in range(first, len(self)))
+        """Number of points of the design that are draws from a prior."""
+        if self._prior.is_uniform or not isinstance(self._design, PriorSampling | PriorLatinHypercube):
+            return 0
+        chosen = [self.suggestion(trial) for trial in range(self.n_earlier, len(self))]
+        return sum(s.phase == DESIGN and s.prior_weight != 0 for s in chosen)
 
     def suggestion(self, trial: int) -> Suggestion:
         """Return the suggestion of one of the first trials that are not those of an earlier experiment."""

@@ -38,9 +38,9 @@ def stands_still(history: History) -> bool:
 
 
 def draws_at_end(suggestions: Iterable[Suggestion]) -> int:
-    """Return how many of the last suggestions in a row were drawn and not from the model."""
+    """Return how many of the suggestions with the last trials were drawn and not from the model."""
     n = 0
-    for suggestion in suggestions:
+    for suggestion in sorted(suggestions, key=lambda s: s.trial):
         if suggestion.phase != CONFIRM:
             n = n + 1 if suggestion.phase == RANDOM else 0
     return n

@@ -34,7 +34,13 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "scalarization": {"type": "linear"},
             "weights": {"type": "dirichlet", "alpha": 1.0},
             "feasibility_weighting": {"method": "probability", "exponent": 1.0},
-            "prior_weighting": {"method": "pibo", "floor": 1e-6, "prior_free": 0.0, "safeguard": False},
+            "prior_weighting": {
+                "method": "pibo",
+                "floor": 1e-6,
+                "prior_free": 0.0,
+                "safeguard": False,
+                "make_up": False,
+            },
         },
     }
 

@@ -13,6 +13,12 @@ from hypermap_lite.typing import as_argument
 INDENT = " " * 12
 """Width of the column of headings."""
 
+NO_IMPROVEMENTS = ("upper_confidence_bound", "thompson_sampling")
+"""Acquisition functions that do not tell how much a point promises."""
+
+CARE = ("prior_free", "safeguard", "make_up")
+"""Options against misleading priors."""
+
 UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
@@ -139,7 +145,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
     if epsilon := scenario.optimizer.options.get("epsilon"):
         lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
-    if escapes := scenario.optimizer.options.get("escapes"):
+    escapes = scenario.optimizer.options.get("escapes")
+    if escapes and (m == 1 or acquisition.function.type not in NO_IMPROVEMENTS):
         lines.append(f"  up to {escapes} drawn between one and the next where they stand still and promise nothing")
     if separation := scenario.optimizer.options.get("separation"):
         lines.append(f"  at least {separation:g} of a range away from what is under evaluation")
@@ -173,7 +180,7 @@ def _prior_use(scenario: Scenario) -> str:
         return "no priors: nothing to weight the acquisition with"
     if weighting is None:
         return "priors: not in the acquisition (prior_weighting is none)"
-    options = {key: value for key, value in weighting.options.items() if key not in ("prior_free", "safeguard")}
+    options = {key: value for key, value in weighting.options.items() if key not in CARE}
     care = _care(weighting.options)
     if weighting.type == "bopro":
         return f"priors: bopro{_options(options)} takes the place of {scenario.acquisition.function.type}{care}"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hypermap_lite.assembly import build_optimizer
-from hypermap_lite.evaluation.outcome import DESIGN, RANDOM
+from hypermap_lite.evaluation.outcome import RANDOM
 from hypermap_lite.scenario.loader import load_scenario
 from tests.optimizers.runs import configurations, evaluate, fail, resumed, run, scenario_of
 
@@ -75,15 +75,46 @@ def test_a_misleading_prior_is_halved_twice_and_dropped_and_the_history_says_so(
     assert halved.prior_weight == pytest.approx(halved.prior_trust * 2.2 / n)
 
 
-def test_draws_all_over_the_space_make_up_for_those_from_a_dropped_prior() -> None:
-    chosen = suggestions(run(believing(0.95), 32, function=valley))
-    guided = sum(s.phase == DESIGN and bool(s.prior_weight) for s in chosen)
-    first = next(i for i, s in enumerate(chosen) if s.prior_trust == 0)
-    drawn = chosen[first : first + guided]
-    assert guided == 6
-    assert {(s.phase, s.prior_weight, s.prior_trust) for s in drawn} == {(RANDOM, 0.0, 0.0)}
-    assert np.ptp([s.configuration["a"] for s in drawn]) > 0.4
-    assert RANDOM not in {s.phase for s in (*chosen[:first], *chosen[first + guided :])}
+def make_up_draws(chosen: list[Any]) -> list[Any]:
+    """Return the uniform draws that follow the end of the trust in a prior."""
+    return [s for s in chosen if (s.phase, s.prior_weight, s.prior_trust) == (RANDOM, 0.0, 0.0)]
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.25, 6), (0.0, 8)])
+def test_draws_all_over_the_space_make_up_for_those_from_a_dropped_prior(share: float, expected: int) -> None:
+    scenario = believing(0.95)
+    scenario["design_of_experiment"] |= {"type": "prior_sampling", "uniform_share": share}
+    scenario["budget"] = {"evaluations": 50}
+    chosen = suggestions(run(scenario, 40, function=valley))
+    first = next((i for i, s in enumerate(chosen) if s.prior_trust == 0), len(chosen))
+    if share:
+        assert chosen[first : first + expected] == make_up_draws(chosen)
+        assert np.ptp([s.configuration["a"] for s in make_up_draws(chosen)]) > 0.4
+    assert len(make_up_draws(chosen)) == expected
+    assert RANDOM not in {s.phase for s in chosen[:first]}
+
+
+def test_no_draws_make_up_late_in_a_run_or_where_they_are_not_wanted() -> None:
+    late = believing(0.95)
+    late["budget"] = {"evaluations": 20}
+    assert not make_up_draws(suggestions(run(late, 20, function=valley)))
+    assert not make_up_draws(suggestions(run(believing(0.95, make_up=False), 30, function=valley)))
+    sobol = believing(0.95)
+    sobol["design_of_experiment"] |= {"type": "sobol"}
+    assert not make_up_draws(suggestions(run(sobol, 30, function=valley)))
+
+
+def test_draws_from_the_prior_make_up_for_nothing() -> None:
+    scenario = believing(0.95)
+    scenario["budget"] = {"evaluations": 60}
+    optimizer = build_optimizer(load_scenario(scenario))
+    for _ in range(11):  # as long as all fail, configurations are drawn from the prior
+        optimizer.tell([fail(s) for s in optimizer.ask()])
+    while len(optimizer.history) < 40:
+        optimizer.tell([evaluate(s, valley) for s in optimizer.ask()])
+    chosen = suggestions(optimizer)
+    assert [s.phase for s in chosen[8:11]] == [RANDOM] * 3
+    assert len(make_up_draws(chosen)) == 6
 
 
 def test_a_good_prior_is_kept() -> None:
@@ -108,7 +139,7 @@ def test_what_is_decided_is_said_once(caplog: pytest.LogCaptureFixture) -> None:
     assert not [r for r in caplog.records if "prior" in r.getMessage()]
 
 
-@pytest.mark.parametrize("stop", [8, 9, 10, 11, 13, 16])
+@pytest.mark.parametrize("stop", [8, 9, 10, 11, 12, 13, 16])
 @pytest.mark.parametrize("a", [0.22, 0.95])
 def test_a_resumed_run_trusts_as_the_uninterrupted_one(a: float, stop: int) -> None:
     whole = run(believing(a), 17, function=valley)

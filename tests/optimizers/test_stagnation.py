@@ -1,5 +1,6 @@
 """A search that stands still, and the draws that lead it off a plateau."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from hypermap_lite.assembly import build_history
 from hypermap_lite.evaluation.outcome import CONFIRM, MODEL, RANDOM, Evaluation, State, Suggestion
 from hypermap_lite.history.history import History
-from hypermap_lite.optimizers import Optimizer
+from hypermap_lite.optimizers import Optimizer, bayesian
 from hypermap_lite.optimizers.stagnation import PATIENCE, draws_at_end, stands_still
 from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.typing import Configuration
@@ -95,12 +96,18 @@ def test_draws_lead_off_a_plateau_where_the_model_stays() -> None:
     assert " ".join([RANDOM] * 4) not in joined
 
 
-def test_a_resumed_run_draws_the_same() -> None:
+def as_shown(suggestion: Suggestion) -> Suggestion:
+    """Return what a history shows of a suggestion, but for the time it took."""
+    return replace(suggestion, seconds=0.0)
+
+
+@pytest.mark.parametrize("stop", [12, 16, 20, 24])
+def test_a_resumed_run_draws_the_same(stop: int) -> None:
     scenario = on_the_plateau(3)
-    whole = run(scenario, 30, function=plateau)
-    half = resumed(scenario, list(whole.history)[:20])
-    assert [s.configuration for s in half.ask(1)] == [whole.history[20].configuration]
-    assert RANDOM in phases(whole)[:20]
+    whole = run(scenario, 28, function=plateau, batch=4)
+    expected = [as_shown(e.suggestion) for e in list(whole.history)[stop : stop + 4]]
+    assert [as_shown(s) for s in resumed(scenario, list(whole.history)[:stop]).ask(4)] == expected
+    assert RANDOM in phases(whole)[12:]
 
 
 def test_a_batch_shares_the_draws() -> None:
@@ -109,19 +116,66 @@ def test_a_batch_shares_the_draws() -> None:
     assert " ".join([RANDOM] * 3) not in " ".join(phases(optimizer))
 
 
-def test_draws_follow_a_prior_that_has_a_part() -> None:
-    prior = {"type": "gaussian", "mean": 0.5, "std": 0.01}
+def test_draws_are_counted_by_their_trials_whatever_finishes_first() -> None:
+    drawn = [Suggestion(trial=i, configuration={}, phase=RANDOM) for i in (5, 6, 7)]
+    slow = Suggestion(trial=4, configuration={}, phase=MODEL)
+    assert draws_at_end([*drawn, slow]) == 3
+
+
+@pytest.mark.parametrize("prior_free", [0.0, 0.5])
+def test_a_step_that_a_prior_guides_is_no_draw(prior_free: float) -> None:
+    prior = {"type": "gaussian", "mean": 0.0, "std": 0.01}
     parameters = scenario_of()["input_parameters"]
     parameters["a"] = parameters["a"] | {"prior": prior}
-    acquisition = {"prior_weighting": {"method": "pibo", "prior_free": 0.0, "safeguard": False}}
+    acquisition = {"prior_weighting": {"method": "pibo", "prior_free": prior_free, "safeguard": False}}
     scenario = on_the_plateau(3, input_parameters=parameters, acquisition=acquisition)
-    drawn = [e for e in run(scenario, 40, function=plateau).history if e.suggestion.phase == RANDOM]
-    assert drawn
-    assert np.abs([e.configuration["a"] - 0.5 for e in drawn]).max() < 0.05
+    drawn = [e.suggestion for e in run(scenario, 40, function=plateau).history if e.suggestion.phase == RANDOM]
+    assert bool(drawn) is bool(prior_free)
+    assert {s.prior_weight for s in drawn} <= {0.0}
+    assert all(float(s.configuration["a"]) > 0.02 for s in drawn)  # uniform, with next to no chance of less
 
 
-def test_a_search_that_gets_on_is_left_alone() -> None:
-    assert RANDOM not in phases(run(scenario_of(budget={"evaluations": 40}), 40))
+def test_draws_keep_their_distance_in_a_batch() -> None:
+    scenario = on_the_plateau(8)
+    scenario["optimizer"] |= {"separation": 0.3}
+    optimizer = run(scenario, 20, function=plateau, batch=4)
+    asked = optimizer.ask(4)
+    assert RANDOM in {s.phase for s in asked}
+    X = optimizer.history.space.encode([s.configuration for s in asked])
+    distances = np.abs(X[:, None] - X[None]).max(axis=2)[np.triu_indices(4, 1)]
+    assert distances.min() >= 0.3
+
+
+FOUR = [{"name": name} for name in "pqrs"]
+SMOOTH: dict[str, dict[str, Any]] = {
+    "hypervolume": {},
+    "scalarized": {
+        "acquisition": {
+            "type": "noisy_expected_improvement",
+            "scalarization": {"type": "tchebyshev"},
+            "weights": {"type": "dirichlet", "ends": 0.5, "redraws": 8},
+        }
+    },
+    "four objectives": {"objectives": FOUR},
+}
+
+
+def smooth(c: Configuration) -> dict[str, float]:
+    """Return quadratics with optima at different places."""
+    a, b = float(c["a"]), float(c["b"]) / 10 + 0.5
+    places = {"p": (0.2, 0.2), "q": (0.8, 0.2), "r": (0.2, 0.8), "s": (0.8, 0.8)}
+    four = {name: (a - x) ** 2 + (b - y) ** 2 for name, (x, y) in places.items()}
+    return {**four, "near": four["p"], "far": -four["s"]}
+
+
+@pytest.mark.parametrize("changes", SMOOTH.values(), ids=SMOOTH)
+def test_a_search_that_promises_something_is_left_alone(
+    changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bayesian, "stands_still", lambda history: True)
+    assert RANDOM not in phases(run(scenario_of(**changes), 12, function=smooth))
+    monkeypatch.setattr(bayesian, "NEXT_TO_NOTHING", np.inf)
+    assert RANDOM in phases(run(scenario_of(**changes), 12, function=smooth))
 
 
 def test_one_value_only_makes_draws_until_there_is_another() -> None:

@@ -24,7 +24,7 @@ FEASIBLE = {"feasible_output.enable_feasible_predictor": True}
 BOX = {**TWO, "weight_sampling": "bounding_box"}
 CMA = {"acquisition_function_optimizer": "cma_es"}
 WEIGHTING = "acquisition.prior_weighting"
-ALWAYS_GUIDED = {"prior_free": 0.0, "safeguard": False}
+ALWAYS_GUIDED = {"prior_free": 0.0, "safeguard": False, "make_up": False}
 PRIOR_OF_X = "input_parameters.x.prior"
 
 

@@ -31,7 +31,7 @@ def test_the_paper_preset_is_the_method_of_the_paper() -> None:
     assert scenario.acquisition.scalarization.type == "linear"
     assert scenario.acquisition.weights.options == {"alpha": 1.0, "ends": 0.0, "redraws": 0}
     assert weighting is not None
-    always_guided = {"prior_free": 0.0, "safeguard": False}
+    always_guided = {"prior_free": 0.0, "safeguard": False, "make_up": False}
     assert weighting.options == {"beta": None, "floor": 1e-6, "unbounded": False, **always_guided}
     assert scenario.design.options == {"uniform_share": 0.0}
 

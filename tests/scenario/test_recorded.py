@@ -9,7 +9,7 @@ from tests.scenario.bad_scenarios import GOOD
 
 PRIORS = [{"type": "mixture", "components": [{"mean": {"x": 1}, "std": {"x": 2}}]}]
 VERSIONS = {"hypermap_lite": "0.1.0"}
-NEW = {"prior_weighting": ("prior_free", "safeguard"), "weights": ("ends", "redraws")}
+NEW = {"prior_weighting": ("make_up", "prior_free", "safeguard"), "weights": ("ends", "redraws")}
 
 
 def old(**changes: Any) -> dict[str, Any]:

@@ -42,6 +42,7 @@ def translate_weighting(draft: Draft) -> None:
     if draft.document["acquisition"]["prior_weighting"]["method"] != "none":
         draft.set(f"{path}.prior_free", 0.0, "prior_method")
         draft.set(f"{path}.safeguard", False, "prior_method")
+        draft.set(f"{path}.make_up", False, "prior_method")
 
 
 def _beta(draft: Draft) -> float:
