@@ -291,13 +291,16 @@ class BayesianOptimizer(Optimizer):
             iteration=1 + self._n_model_based() // self._batch_size,
         )
 
-    def _n_model_based(self) -> int:
-        """Return the number of model-based suggestions before this one.
+    def _n_model_based(self, *, guided: bool = False) -> int:
+        """Return the number of model-based suggestions before this one, on request without prior-free ones.
 
         Evaluations of an earlier experiment beyond the design count as such: a run that goes on from a file weighs the
         prior as one that never stopped.
         """
-        return self._initial.n_beyond + sum(suggestion.phase == MODEL for suggestion in self._suggestions())
+        chosen = [s.trial for s in self._suggestions() if s.phase == MODEL]
+        if guided and not self._guide.is_idle:
+            chosen = [trial for trial in chosen if not self._guide.is_free(trial)]
+        return self._initial.n_beyond + len(chosen)
 
     def _pending_points(self) -> FloatArray:
         """Return the configurations under evaluation, shape (p, d)."""
@@ -333,11 +336,11 @@ class BayesianOptimizer(Optimizer):
         return space.draw(SPREAD_POINTS, lambda n: sobol_points(n, space.dimension, rng), MAX_SPREAD_DRAWS)
 
     def _guidance(self, trial: int) -> Guidance:
-        """Return the part of the prior in a suggestion, decaying with the model-based suggestions before it."""
+        """Return the part of the prior in a suggestion, decaying with those before it that it had a part in."""
         n_in_all = self._budget - len(self._initial) + self._initial.n_beyond
         return self._guide.guidance(
             trial,
-            n=1 + self._n_model_based(),
+            n=1 + self._n_model_based(guided=True),
             model_budget=max(n_in_all, 1),
             history=list(self.history),
             first=len(self._initial),

@@ -73,7 +73,7 @@ class Guide:
         trial
             Its number, which decides on prior-free steps and on the prior.
         n
-            Its running number among the model-based suggestions, from 1.
+            Its running number among the model-based suggestions that are not prior-free, from 1.
         model_budget
             Model-based suggestions of the whole run.
         history
@@ -86,8 +86,7 @@ class Guide:
         weighting = self._weighting
         if weighting is None or self.is_idle:
             return Guidance(belief=Belief(prior=together(self._beliefs)))
-        rng = generator(self._seed, Stream.PRIOR, trial)
-        is_free, place = rng.random() < weighting.prior_free, rng.random()
+        is_free, place = self._drawn(trial)
         if not weighting.safeguard:
             belief = self._beliefs[int(place * len(self._beliefs))]
             return Guidance(belief=belief, weight=0.0 if is_free else weighting.weight(n, model_budget))
@@ -99,6 +98,16 @@ class Guide:
             belief = replace(belief, prior=ProductPrior(self._space.dimension))
         weight = 0.0 if is_free else trust * weighting.weight(n, model_budget)
         return Guidance(belief=belief, weight=weight, trust=trust)
+
+    def is_free(self, trial: int) -> bool:
+        """Tell whether a suggestion leaves the priors out by chance."""
+        return self._drawn(trial)[0]
+
+    def _drawn(self, trial: int) -> tuple[bool, float]:
+        """Return what chance decides: whether a suggestion is prior-free, and whose prior it follows, in [0, 1)."""
+        rng, weighting = generator(self._seed, Stream.PRIOR, trial), self._weighting
+        share = 0.0 if weighting is None else weighting.prior_free
+        return rng.random() < share, rng.random()
 
     def _trust(self, i: int, history: Sequence[Evaluation], first: int, evidence: Evidences) -> float:
         """Return the trust in the i-th prior after all checks so far."""
