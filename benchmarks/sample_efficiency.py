@@ -52,7 +52,7 @@ TABLES: Mapping[str, Table] = {
     "skills": Table(title="A skill that mostly fails", problems=tuple(SKILLS)),
     "ablation": Table(
         title="The default method with one default changed",
-        problems=("hartmann6_noisy", "func2c", "branin_currin_noisy", "dtlz2", "chankong_haimes", "plateau"),
+        problems=("branin", "hartmann6_noisy", "func2c", "branin_currin_noisy", "dtlz2", "chankong_haimes", "plateau"),
         methods=(DEFAULT, *ABLATIONS),
     ),
 }

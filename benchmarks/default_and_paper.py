@@ -1,0 +1,117 @@
+"""Compare the default method with the paper's on the robot tasks, prior by prior.
+
+    python benchmarks/default_and_paper.py
+
+Reads the stored results of the studies in `outputs/reference/` (`reference.py` makes them), of the same number of runs
+by either method with the same seeds, and writes a page with a table, and a picture for the page of the experiments.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from reporting import machine, markdown_table
+
+from hypermap_lite.plotting import style
+from hypermap_lite.study.statistics import evaluations_to_reach, ratio_of_means
+
+ROOT = Path(__file__).parent.parent
+REFERENCE = ROOT / "outputs" / "reference"
+PICTURE = ROOT / "docs" / "images" / "default_and_paper.png"
+TASKS = {"peg_insertion": 8, "object_pushing": 8, "obstacle_avoidance": 12}
+"""Evaluations of the initial design."""
+
+VARIANTS = {"no_prior": "no prior", "operator_prior": "operator's prior", "misleading_prior": "misleading prior"}
+METHODS = {"_default": ("default", "-"), "": ("paper", style.DASHES)}
+"""End of the study's name, name and dashes of each method."""
+
+UNIT = 1e6
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def traces_of(study: str) -> dict[str, FloatArray]:
+    """Return the hypervolume after each evaluation, shape (runs, evaluations), of each variant."""
+    runs: dict[str, dict[str, list[float]]] = {variant: {} for variant in VARIANTS}
+    with (REFERENCE / study / "summary.csv").open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["variant"] in runs:
+                runs[row["variant"]].setdefault(row["seed"], []).append(float(row["hypervolume"]) / UNIT)
+    return {variant: np.array([traces[seed] for seed in sorted(traces)]) for variant, traces in runs.items()}
+
+
+def rows(task: str) -> Iterator[list[str]]:
+    """Yield a row per prior."""
+    ours, papers = (traces_of(f"{task}{suffix}") for suffix in METHODS)
+    for variant, label in VARIANTS.items():
+        a, b = ours[variant], papers[variant]
+        is_paired = len(a) == len(b)
+        ratio = ratio_of_means(a[:, -1], b[:, -1], is_paired=is_paired)
+        reached = evaluations_to_reach(a, b[:, -1], is_paired=is_paired)
+        relative = ratio_of_means(a[:, -1], ours["no_prior"][:, -1], is_paired=False)
+        half = [f"{traces[:, traces.shape[1] // 2 - 1].mean():.2f}" for traces in (a, b)]
+        yield [
+            task.replace("_", " "),
+            label,
+            *(f"{x[:, -1].mean():.2f} ± {x[:, -1].std(ddof=1) / math.sqrt(len(x)):.2f}" for x in (a, b)),
+            *half,
+            f"{ratio.value:.2f} ({ratio.low:.2f} to {ratio.high:.2f})",
+            f"{reached.value:.0f} of {a.shape[1]}",
+            "" if variant == "no_prior" else f"{relative.value:.2f} ({relative.low:.2f} to {relative.high:.2f})",
+        ]
+
+
+def draw() -> None:
+    """Draw a panel per task: mean hypervolume against evaluations, with one standard error."""
+    with style.house_style():
+        figure = style.new_figure(12.0, 4.4)
+        for axes, (task, n_design) in zip(figure.subplots(1, len(TASKS)), TASKS.items(), strict=True):
+            for suffix, (_, dashes) in METHODS.items():
+                for index, traces in enumerate(traces_of(f"{task}{suffix}").values()):
+                    mean, error = traces.mean(axis=0), traces.std(axis=0, ddof=1) / math.sqrt(len(traces))
+                    evaluations = np.arange(1, len(mean) + 1)
+                    colour = style.colour(index)
+                    axes.plot(evaluations, mean, color=colour, linestyle=dashes, linewidth=1.8)
+                    axes.fill_between(evaluations, mean - error, mean + error, color=colour, alpha=0.10, linewidth=0)
+            style.mark_design_end(axes, n_design)
+            axes.set_title(task.replace("_", " "))
+            axes.set_xlabel("evaluations")
+            axes.set_ylim(bottom=0)
+        figure.axes[0].set_ylabel("hypervolume / 10⁶")
+        entries = [
+            style.legend_entry(f"{label}, {method}", style.colour(index), line=dashes)
+            for method, dashes in METHODS.values()
+            for index, label in enumerate(VARIANTS.values())
+        ]
+        style.add_legend(figure, entries)
+        style.save(figure, PICTURE)
+    PICTURE.with_suffix(".pdf").unlink(missing_ok=True)
+
+
+def main() -> None:
+    """Write the page and the picture."""
+    header = ["task", "prior", "default", "paper", "default, half", "paper, half", "default / paper"]
+    header += ["paper's end reached after", "default / default without prior"]
+    page = [
+        "# The default method and the paper's on the robot tasks",
+        "",
+        "    python benchmarks/default_and_paper.py",
+        "",
+        machine(),
+        "Mean final hypervolume / 10⁶ with its standard error, and after half of the evaluations; ratios of means",
+        "with 95 % bootstrap intervals over the runs, seeds in pairs; evaluations after which the default's mean has",
+        "the final value of the paper's; and what a prior is worth to the default.",
+        "",
+        *markdown_table(header, [row for task in TASKS for row in rows(task)]),
+    ]
+    (Path(__file__).parent / "results" / "default_and_paper.md").write_text("\n".join(page) + "\n", encoding="utf-8")
+    draw()
+
+
+if __name__ == "__main__":
+    main()
