@@ -24,7 +24,8 @@ FIRST_MILESTONE = 8
 """Hyperparameters are fitted on the first 8 evaluations, then at numbers that grow by the surrogate's factor.
 
 The warm start of any fit is that of the milestone below, never that of the last call, so it is a function of the
-history and a resumed run fits as the uninterrupted one did.
+history and a resumed run fits as the uninterrupted one did. A milestone's own fit starts anew, too: an optimum of a few
+evaluations in which noise passes for a rough function can otherwise be kept for good.
 """
 
 
@@ -118,10 +119,11 @@ class Models:
         n, start, growth = len(X), None, self._surrogate.warm_start_growth
         for k in () if growth is None else milestones(n, growth):
             if k not in self._warm_starts:
-                self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start).hyperparameters
+                self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start, anew=True).hyperparameters
             start = self._warm_starts[k]
-        posterior = self._fit_from(X, Y, start)
-        if growth is not None and n in milestones(n + 1, growth):
+        is_milestone = growth is not None and n in milestones(n + 1, growth)
+        posterior = self._fit_from(X, Y, start, anew=is_milestone)
+        if is_milestone:
             self._warm_starts[n] = posterior.hyperparameters  # what a later call would work out again
         return posterior
 
@@ -136,12 +138,15 @@ class Models:
         for k in () if growth is None else milestones(len(samples.X), growth):
             if k not in self._warm_starts:
                 first = self._history.samples(ends[k - 1])
-                self._warm_starts[k] = self._fit_from(first.X, first.Y, start, first.noise_variance).hyperparameters
+                fitted = self._fit_from(first.X, first.Y, start, first.noise_variance, anew=True)
+                self._warm_starts[k] = fitted.hyperparameters
             start = self._warm_starts[k]
-        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance)
+        n_samples = len(samples.X)
+        is_milestone = growth is not None and n_samples in milestones(n_samples + 1, growth)
+        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance, anew=is_milestone)
 
     def _fit_from(
-        self, X: FloatArray, Y: FloatArray, start: Any, noise_variance: FloatArray | None = None
+        self, X: FloatArray, Y: FloatArray, start: Any, noise_variance: FloatArray | None = None, *, anew: bool = False
     ) -> Posterior:
         rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
         space = self._history.space
@@ -151,6 +156,7 @@ class Models:
             is_ordered=space.is_ordered,
             rng=rng,
             start=start,
+            anew=anew,
             permutations=space.permutations,
             noise_variance=noise_variance,
         )

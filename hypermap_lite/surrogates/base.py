@@ -136,6 +136,7 @@ class Surrogate(Protocol):
         is_ordered: BoolArray,
         rng: Rng,
         start: Any = None,
+        anew: bool = False,
         permutations: Permutations = NO_PERMUTATIONS,
         noise_variance: FloatArray | None = None,
     ) -> Posterior:
@@ -153,6 +154,8 @@ class Surrogate(Protocol):
             Source of all randomness.
         start
             `hyperparameters` of an earlier posterior to start from.
+        anew
+            Whether to start from what is likely before any data, too, for an earlier posterior may have gone astray.
         permutations
             The axes without an order whose codes are permutations.
         noise_variance

@@ -43,9 +43,9 @@ class GaussianProcess:
     """Whether evaluations are noisy; the noise is then learned."""
 
     restart: bool = False
-    """Whether every fit starts from the mode of the priors too, not only where there is no earlier fit to start from.
+    """Whether every fit starts from the mode of the priors too, not only those from which later ones start.
 
-    The optimum changes little from one evaluation to the next, and the earlier fits have started from the mode.
+    The optimum changes little from one evaluation to the next.
     """
 
     noise_floor: float = 1e-10
@@ -98,6 +98,7 @@ class GaussianProcess:
         is_ordered: BoolArray,
         rng: Rng,
         start: Sequence[Hyperparameters] | None = None,
+        anew: bool = False,
         permutations: Permutations = NO_PERMUTATIONS,
         noise_variance: FloatArray | None = None,
     ) -> Posterior:
@@ -119,7 +120,7 @@ class GaussianProcess:
             known = None if noise_variance is None or not self.noise else output.noise(noise_variance[:, k])
             likelihood = MarginalLikelihood(X, output.values, is_ordered, prior, permutations, known)
             starts = [] if start is None else [start[k]]
-            if start is None or self.restart:
+            if start is None or anew or self.restart:
                 starts.append(prior.mode())
             best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
             processes.append(Process.condition(X, output, best, is_ordered, permutations, known))

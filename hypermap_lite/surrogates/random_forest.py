@@ -81,6 +81,7 @@ class RandomForest:
         is_ordered: BoolArray,
         rng: Rng,
         start: Any = None,
+        anew: bool = False,
         permutations: Permutations = NO_PERMUTATIONS,
         noise_variance: FloatArray | None = None,
     ) -> Posterior:
