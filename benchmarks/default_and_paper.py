@@ -2,8 +2,8 @@
 
     python benchmarks/default_and_paper.py
 
-Reads the stored results of the studies in `outputs/reference/` (`reference.py` makes them), of the same number of runs
-by either method with the same seeds, and writes a page with a table, and a picture for the page of the experiments.
+Reads the stored results of the studies in `outputs/reference/` (`reference.py` makes them), those with the seeds that
+both methods have, and writes a page with a table, and a picture for the page of the experiments.
 """
 
 from __future__ import annotations
@@ -35,33 +35,42 @@ UNIT = 1e6
 FloatArray = npt.NDArray[np.float64]
 
 
-def traces_of(study: str) -> dict[str, FloatArray]:
+def traces_of(task: str, suffix: str) -> dict[str, FloatArray]:
     """Return the hypervolume after each evaluation, shape (runs, evaluations), of each variant."""
+    runs, others = (runs_of(f"{task}{end}") for end in (suffix, *(end for end in METHODS if end != suffix)))
+    return {
+        variant: np.array([trace for seed, trace in sorted(traces.items()) if seed in others[variant]])
+        for variant, traces in runs.items()
+    }
+
+
+def runs_of(study: str) -> dict[str, dict[str, list[float]]]:
+    """Return the hypervolume after each evaluation by variant and seed."""
     runs: dict[str, dict[str, list[float]]] = {variant: {} for variant in VARIANTS}
     with (REFERENCE / study / "summary.csv").open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             if row["variant"] in runs:
                 runs[row["variant"]].setdefault(row["seed"], []).append(float(row["hypervolume"]) / UNIT)
-    return {variant: np.array([traces[seed] for seed in sorted(traces)]) for variant, traces in runs.items()}
+    return runs
 
 
 def rows(task: str) -> Iterator[list[str]]:
     """Yield a row per prior."""
-    ours, papers = (traces_of(f"{task}{suffix}") for suffix in METHODS)
+    ours, papers = (traces_of(task, suffix) for suffix in METHODS)
     for variant, label in VARIANTS.items():
         a, b = ours[variant], papers[variant]
-        is_paired = len(a) == len(b)
-        ratio = ratio_of_means(a[:, -1], b[:, -1], is_paired=is_paired)
-        reached = evaluations_to_reach(a, b[:, -1], is_paired=is_paired)
+        ratio = ratio_of_means(a[:, -1], b[:, -1], is_paired=True)
+        reached = evaluations_to_reach(a, b[:, -1], is_paired=True).value
         relative = ratio_of_means(a[:, -1], ours["no_prior"][:, -1], is_paired=False)
         half = [f"{traces[:, traces.shape[1] // 2 - 1].mean():.2f}" for traces in (a, b)]
         yield [
             task.replace("_", " "),
             label,
+            str(len(a)),
             *(f"{x[:, -1].mean():.2f} ± {x[:, -1].std(ddof=1) / math.sqrt(len(x)):.2f}" for x in (a, b)),
             *half,
             f"{ratio.value:.2f} ({ratio.low:.2f} to {ratio.high:.2f})",
-            f"{reached.value:.0f} of {a.shape[1]}",
+            "never" if math.isinf(reached) else f"{reached:.0f} of {a.shape[1]}",
             "" if variant == "no_prior" else f"{relative.value:.2f} ({relative.low:.2f} to {relative.high:.2f})",
         ]
 
@@ -72,7 +81,7 @@ def draw() -> None:
         figure = style.new_figure(12.0, 4.4)
         for axes, (task, n_design) in zip(figure.subplots(1, len(TASKS)), TASKS.items(), strict=True):
             for suffix, (_, dashes) in METHODS.items():
-                for index, traces in enumerate(traces_of(f"{task}{suffix}").values()):
+                for index, traces in enumerate(traces_of(task, suffix).values()):
                     mean, error = traces.mean(axis=0), traces.std(axis=0, ddof=1) / math.sqrt(len(traces))
                     evaluations = np.arange(1, len(mean) + 1)
                     colour = style.colour(index)
@@ -95,7 +104,7 @@ def draw() -> None:
 
 def main() -> None:
     """Write the page and the picture."""
-    header = ["task", "prior", "default", "paper", "default, half", "paper, half", "default / paper"]
+    header = ["task", "prior", "runs", "default", "paper", "default, half", "paper, half", "default / paper"]
     header += ["paper's end reached after", "default / default without prior"]
     page = [
         "# The default method and the paper's on the robot tasks",
