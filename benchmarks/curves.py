@@ -33,7 +33,7 @@ LINES: Mapping[str, tuple[str, Any]] = {
 SPARE_COLOURS = (style.COLOURS[0], *style.COLOURS[2:])
 SMALLEST_GAP = 1e-4
 COLUMNS, PANEL, LEGEND_HEIGHT = 3, (3.9, 3.1), 1.2
-"""Panels side by side, width and height of each, and height for title and legend [inch]."""
+"""Panels side by side at most, width and height of each, and height for title and legend [inch]."""
 
 
 def spare_line(index: int) -> tuple[str, Any]:
@@ -82,10 +82,11 @@ def draw(
         Colour and dashes of methods; those of others follow from their places.
     """
     shown = [problem for problem in problems if any(row["problem"] == problem for row in rows)]
-    n_rows = math.ceil(len(shown) / COLUMNS)
+    n_columns = max(min(COLUMNS, len(shown)), 1)
+    n_rows = math.ceil(len(shown) / n_columns)
     with style.house_style():
-        figure = style.new_figure(PANEL[0] * COLUMNS, PANEL[1] * n_rows + LEGEND_HEIGHT)
-        panels = figure.subplots(n_rows, COLUMNS, squeeze=False).ravel()
+        figure = style.new_figure(PANEL[0] * n_columns, PANEL[1] * n_rows + LEGEND_HEIGHT)
+        panels = figure.subplots(n_rows, n_columns, squeeze=False).ravel()
         drawn = {}
         for axes, problem in zip(panels, shown, strict=False):
             is_regret = PROBLEMS[problem].reference_point is None

@@ -9,6 +9,7 @@ both methods have, and writes a page with a table, and a picture for the page of
 from __future__ import annotations
 
 import csv
+import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,9 +24,7 @@ from hypermap_lite.study.statistics import evaluations_to_reach, ratio_of_means
 ROOT = Path(__file__).parent.parent
 REFERENCE = ROOT / "outputs" / "reference"
 PICTURE = ROOT / "docs" / "images" / "default_and_paper.png"
-TASKS = {"peg_insertion": 8, "object_pushing": 8, "obstacle_avoidance": 12}
-"""Evaluations of the initial design."""
-
+TASKS = ("peg_insertion", "object_pushing", "obstacle_avoidance")
 VARIANTS = {"no_prior": "no prior", "operator_prior": "operator's prior", "misleading_prior": "misleading prior"}
 METHODS = {"_default": ("default", "-"), "": ("paper", style.DASHES)}
 """End of the study's name, name and dashes of each method."""
@@ -54,6 +53,13 @@ def runs_of(study: str) -> dict[str, dict[str, list[float]]]:
     return runs
 
 
+def design_of(task: str) -> int:
+    """Return the number of evaluations of the initial design."""
+    [first] = (REFERENCE / task / "runs" / "no_prior").iterdir()
+    scenario = json.loads((first / "scenario.json").read_text(encoding="utf-8"))
+    return int(scenario["design_of_experiment"]["number_of_samples"])
+
+
 def rows(task: str) -> Iterator[list[str]]:
     """Yield a row per prior."""
     ours, papers = (traces_of(task, suffix) for suffix in METHODS)
@@ -79,7 +85,7 @@ def draw() -> None:
     """Draw a panel per task: mean hypervolume against evaluations, with one standard error."""
     with style.house_style():
         figure = style.new_figure(12.0, 4.4)
-        for axes, (task, n_design) in zip(figure.subplots(1, len(TASKS)), TASKS.items(), strict=True):
+        for axes, task in zip(figure.subplots(1, len(TASKS)), TASKS, strict=True):
             for suffix, (_, dashes) in METHODS.items():
                 for index, traces in enumerate(traces_of(task, suffix).values()):
                     mean, error = traces.mean(axis=0), traces.std(axis=0, ddof=1) / math.sqrt(len(traces))
@@ -87,7 +93,7 @@ def draw() -> None:
                     colour = style.colour(index)
                     axes.plot(evaluations, mean, color=colour, linestyle=dashes, linewidth=1.8)
                     axes.fill_between(evaluations, mean - error, mean + error, color=colour, alpha=0.10, linewidth=0)
-            style.mark_design_end(axes, n_design)
+            style.mark_design_end(axes, design_of(task))
             axes.set_title(task.replace("_", " "))
             axes.set_xlabel("evaluations")
             axes.set_ylim(bottom=0)

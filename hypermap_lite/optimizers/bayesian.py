@@ -172,7 +172,7 @@ class BayesianOptimizer(Optimizer):
 
     def _leads_nowhere(self, suggestion: Suggestion, feasibility: FeasibilityPosterior | None) -> bool:
         """Tell whether it is time for a draw: the model has been of no use, and promises none by this suggestion."""
-        if not stands_still(self.history) or draws_at_end(self._suggestions()) >= self._method.escapes:
+        if draws_at_end(self._suggestions()) >= self._method.escapes or not stands_still(self.history):
             return False
         if len(self.history.objectives) == 1:
             return True

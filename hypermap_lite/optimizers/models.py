@@ -121,9 +121,8 @@ class Models:
             if k not in self._warm_starts:
                 self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start, anew=True).hyperparameters
             start = self._warm_starts[k]
-        is_milestone = growth is not None and n in milestones(n + 1, growth)
-        posterior = self._fit_from(X, Y, start, anew=is_milestone)
-        if is_milestone:
+        posterior = self._fit_from(X, Y, start, anew=is_milestone(n, growth))
+        if is_milestone(n, growth):
             self._warm_starts[n] = posterior.hyperparameters  # what a later call would work out again
         return posterior
 
@@ -141,9 +140,8 @@ class Models:
                 fitted = self._fit_from(first.X, first.Y, start, first.noise_variance, anew=True)
                 self._warm_starts[k] = fitted.hyperparameters
             start = self._warm_starts[k]
-        n_samples = len(samples.X)
-        is_milestone = growth is not None and n_samples in milestones(n_samples + 1, growth)
-        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance, anew=is_milestone)
+        anew = is_milestone(len(samples.X), growth)
+        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance, anew=anew)
 
     def _fit_from(
         self, X: FloatArray, Y: FloatArray, start: Any, noise_variance: FloatArray | None = None, *, anew: bool = False
@@ -160,6 +158,11 @@ class Models:
             permutations=space.permutations,
             noise_variance=noise_variance,
         )
+
+
+def is_milestone(n: int, growth: float | None) -> bool:
+    """Tell whether the fit to n evaluations starts later ones; without a growth none does."""
+    return growth is not None and n in milestones(n + 1, growth)
 
 
 def milestones(n: int, growth: float) -> Iterator[int]:

@@ -147,7 +147,7 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
     escapes = scenario.optimizer.options.get("escapes")
     if escapes and (m == 1 or acquisition.function.type not in NO_IMPROVEMENTS):
-        lines.append(f"  up to {escapes} drawn between one and the next where they stand still and promise nothing")
+        lines.append(f"  where the search stands still, up to {escapes} drawn uniformly between one and the next")
     if separation := scenario.optimizer.options.get("separation"):
         lines.append(f"  at least {separation:g} of a range away from what is under evaluation")
     lines += last
