@@ -165,56 +165,66 @@ class BayesianOptimizer(Optimizer):
         self, trial: int, rng: Rng, feasibility: FeasibilityPosterior | None, guidance: Guidance
     ) -> Suggestion | None:
         """Return the best point by the model, or a draw where the search stands still."""
-        suggestion = self._by_trade_off(self._context(rng, feasibility), trial, feasibility, guidance)
-        if suggestion is None or guidance.weight or not self._leads_nowhere(suggestion, feasibility):
+        context = self._context(rng, feasibility)
+        found = self._by_trade_off(context, trial, feasibility, guidance)
+        if found is None:
+            return None
+        promise, suggestion = found
+        if guidance.weight or not self._leads_nowhere(promise):
             return suggestion
         return self._drawn_anywhere(trial, guidance) or suggestion
 
-    def _leads_nowhere(self, suggestion: Suggestion, feasibility: FeasibilityPosterior | None) -> bool:
-        """Tell whether it is time for a draw: the model has been of no use, and promises none by this suggestion."""
+    def _leads_nowhere(self, promise: float) -> bool:
+        """Tell whether it is time for a draw: the model has been of no use, and promises none."""
         if draws_at_end(self._suggestions()) >= self._method.escapes or not stands_still(self.history):
             return False
-        if len(self.history.objectives) == 1:
-            return True
-        promise = suggestion.acquisition_value
-        if promise is None or not self._method.acquisition.is_logarithmic:
-            return False
-        if feasibility is not None and self._method.feasibility_weighting is not None:
-            x = self.history.space.encode([suggestion.configuration])
-            log_probability = float(feasibility.log_probability(x)[0])
-            promise -= self._method.feasibility_weighting.exponent * log_probability
-        return promise < NEXT_TO_NOTHING
+        return len(self.history.objectives) == 1 or promise < NEXT_TO_NOTHING
 
     def _by_trade_off(
         self, context: AcquisitionContext, trial: int, feasibility: FeasibilityPosterior | None, guidance: Guidance
-    ) -> Suggestion | None:
-        """Return the best point at a drawn trade-off; weights at which none promises anything may be drawn again."""
+    ) -> tuple[float, Suggestion] | None:
+        """Return what the best point at a drawn trade-off promises, and the point.
+
+        Weights at which none promises anything may be drawn again.
+        """
         rng = context.rng
         has_weights = self._method.acquisition.is_scalarizing and len(self.history.objectives) > 1
         n_draws = 1 + self._method.weights.redraws * has_weights
         best: tuple[float, Suggestion] | None = None
+        mean = context.posterior.predict(context.X).mean
         for k in range(n_draws):
             if k:
                 context = replace(context, weights=self._weights(context.normalization, rng))
             scorer = self._scorer(context, feasibility, guidance)
-            suggestion = self._by_score(scorer, self._incumbents(context), trial, rng, guidance)
-            if n_draws == 1:
-                return suggestion
+            suggestion = self._by_score(scorer, self._incumbents(context, mean), trial, rng, guidance)
             if suggestion is None:
                 break
-            promise = self._promise(context, suggestion)
+            promise = math.inf  # of a guided step without redraws nobody asks
+            if n_draws > 1 or not guidance.weight:
+                promise = self._promise(context, suggestion, feasibility, guidance)
             if best is None or promise > best[0]:
                 best = promise, suggestion
             if promise > NEXT_TO_NOTHING:
                 break
-        return None if best is None else best[1]
+        return best
 
-    def _promise(self, context: AcquisitionContext, suggestion: Suggestion) -> float:
+    def _promise(
+        self,
+        context: AcquisitionContext,
+        suggestion: Suggestion,
+        feasibility: FeasibilityPosterior | None,
+        guidance: Guidance,
+    ) -> float:
         """Return what the acquisition function alone, without prior and feasibility, thinks of a suggestion."""
-        if not self._method.acquisition.is_logarithmic:
+        by_feasibility = self._method.feasibility_weighting
+        if not self._method.acquisition.is_logarithmic or suggestion.acquisition_value is None:
             return math.inf
         x = self.history.space.encode([suggestion.configuration])
-        return float(self._method.acquisition.scorer(context)(x)[0])
+        if guidance.weight:
+            return float(self._method.acquisition.scorer(context)(x)[0])
+        if feasibility is None or by_feasibility is None:
+            return suggestion.acquisition_value
+        return suggestion.acquisition_value - by_feasibility.exponent * float(feasibility.log_probability(x)[0])
 
     def _weights(self, normalization: Normalization, rng: Rng) -> FloatArray:
         return self._method.weights.sample(self.history.objectives, normalization, rng)
@@ -347,12 +357,11 @@ class BayesianOptimizer(Optimizer):
             evidence=self._models.evidence,
         )
 
-    def _incumbents(self, context: AcquisitionContext) -> FloatArray:
-        """Return the observed points worth refining, shape (k, d), best first by their predicted means.
+    def _incumbents(self, context: AcquisitionContext, mean: FloatArray) -> FloatArray:
+        """Return the observed points worth refining, shape (k, d), best first by their predicted means, shape (n, m).
 
         Those of the best scalarization, or those of the front, the loneliest first.
         """
-        mean = context.posterior.predict(context.X).mean
         if self._method.acquisition.is_scalarizing or mean.shape[1] == 1:
             scalars = context.scalarization(context.normalization(mean), context.weights)
             return context.X[np.argsort(scalars, kind="stable")[:MAX_INCUMBENTS]]

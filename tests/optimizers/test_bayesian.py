@@ -264,7 +264,7 @@ def test_a_trade_off_drawn_again_in_vain_loses_no_suggestion() -> None:
     optimizer = run(scenario_of(acquisition=REDRAWN), 8)
     maximizer = Once()
     optimizer._method = replace(optimizer._method, maximizer=maximizer)
-    optimizer._promise = lambda context, suggestion: -np.inf
+    optimizer._promise = lambda *_: -np.inf
     assert [s.phase for s in optimizer.ask()] == ["model"]
     assert maximizer.n_calls == 2
 
