@@ -49,7 +49,7 @@ TABLES: Mapping[str, Table] = {
     "single": Table(title="One objective", problems=tuple(SINGLE)),
     "several": Table(title="Two and three objectives", problems=tuple(SEVERAL)),
     "constrained": Table(title="Two objectives with an unknown constraint", problems=tuple(CONSTRAINED)),
-    "skills": Table(title="A skill that mostly fails", problems=tuple(SKILLS)),
+    "skills": Table(title="Skills: a plateau of failure, and the emulated robot tasks", problems=tuple(SKILLS)),
     "ablation": Table(
         title="The default method with one default changed",
         problems=("branin", "hartmann6_noisy", "func2c", "branin_currin_noisy", "dtlz2", "chankong_haimes", "plateau"),

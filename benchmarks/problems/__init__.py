@@ -1,4 +1,4 @@
-"""Problems with published formulas and known answers, on which optimizers are compared."""
+"""Problems with known answers, most with published formulas, on which optimizers are compared."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from dataclasses import replace
 
 from .base import Problem
 from .constrained import CONSTRAINED
+from .emulated import EMULATED
 from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
 
 __all__ = ["CONSTRAINED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "Problem"]
 
-SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1)}
+SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
 
 PROBLEMS: Mapping[str, Problem] = {**SINGLE, **SEVERAL, **CONSTRAINED, **SKILLS}

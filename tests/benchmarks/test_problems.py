@@ -2,13 +2,17 @@
 
 import itertools
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
 from benchmarks.problems import PROBLEMS
-from hypermap_lite import hypervolume
+from benchmarks.problems.emulated import EMULATED, TASKS, Landscape
+from hypermap_lite import hypervolume, load_scenario
+
+SCENARIOS = Path(__file__).parents[2] / "example_scenarios" / "robot"
 
 MINIMIZERS = {
     "branin": [(-math.pi, 12.275), (math.pi, 2.275), (3 * math.pi, 2.475)],
@@ -117,6 +121,33 @@ def test_front_of_the_plateau_gives_the_hypervolume_in_closed_form():
 def test_most_of_the_plateau_is_failure_of_equal_duration():
     durations = PROBLEMS["plateau"].function(points("plateau", 20_000))[:, 0]
     assert np.mean(durations == 1.5) == pytest.approx(1 - math.pi * 0.15**2 * 0.7, abs=0.01)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_emulated_task_has_bounds_and_reference_point_of_the_task(task):
+    problem, scenario = EMULATED[f"{task}_emulated"], load_scenario(SCENARIOS / task / "no_prior.json")
+    assert {name: tuple(p["values"]) for name, p in problem.parameters.items()} == {
+        p.name: p.values for p in scenario.parameters
+    }
+    assert problem.reference_point == tuple(o.sign * o.reference_point for o in scenario.objectives)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_emulated_task_predicts_rollouts_that_it_does_not_know_and_has_the_hypervolume_it_says(task):
+    problem = EMULATED[f"{task}_emulated"]
+    landscape = Landscape.of(task, problem.parameters)
+    assert (landscape.r2() > 0.65).all()
+    Y = landscape.values_at_rows()
+    assert hypervolume(Y, np.array(problem.reference_point)) == pytest.approx(problem.best, rel=1e-5)
+    assert share(f"{task}_emulated", points(f"{task}_emulated", 20_000)) < 1
+
+
+def test_landscape_is_the_weighted_mean_of_the_nearest_evaluations():
+    i = np.arange(12.0)[:, None]
+    landscape = Landscape(X=i / 12, Y=i**2, low=np.array([5.0]), width=np.array([24.0]))
+    near = np.arange(1, 10)  # those at a distance of 5 weigh nothing
+    weights = (1 - (np.abs(near - 5) / 5) ** 3) ** 3
+    assert landscape(np.array([[5.0 + 2 * 5]])) == pytest.approx(np.sum(weights * near**2) / weights.sum(), abs=1e-6)
 
 
 def test_noise_is_a_share_of_the_standard_deviation_over_the_box():
