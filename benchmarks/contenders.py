@@ -99,7 +99,7 @@ class Ours:
             **(changes or {}),
         }
         earlier = [self._evaluation(trial, row) for trial, row in enumerate(task.design)]
-        self._optimizer = Optimizer(scenario, evaluations=earlier, overrides=overrides)
+        self.optimizer = Optimizer(scenario, evaluations=earlier, overrides=overrides)
         self._asked: Suggestion | None = None
         self._spent = 0.0, 0.0
 
@@ -113,7 +113,7 @@ class Ours:
     def suggest(self) -> Suggested:
         """Ask."""
         cpu, wall = time.process_time(), time.perf_counter()
-        (self._asked,) = self._optimizer.ask()
+        (self._asked,) = self.optimizer.ask()
         cpu, wall = time.process_time() - cpu + self._spent[0], time.perf_counter() - wall + self._spent[1]
         return Suggested(self._asked.configuration, cpu, wall)
 
@@ -124,7 +124,7 @@ class Ours:
         if self._problem.is_feasible is not None:
             result[VALID] = is_feasible
         cpu, wall = time.process_time(), time.perf_counter()
-        self._optimizer.tell(self._asked, result)
+        self.optimizer.tell(self._asked, result)
         self._spent = time.process_time() - cpu, time.perf_counter() - wall
 
     def close(self) -> None:
