@@ -20,6 +20,7 @@ def execute(args: argparse.Namespace) -> int:
     from hypermap_lite.assembly import build_history
     from hypermap_lite.history.files import write_atomically
     from hypermap_lite.history.finishing_order import read_as_learnt
+    from hypermap_lite.history.pooling import pooled
     from hypermap_lite.reports import posterior_front
     from hypermap_lite.scenario import load_scenario
 
@@ -37,8 +38,8 @@ def execute(args: argparse.Namespace) -> int:
     history.extend(read_as_learnt(folder, history, scenario.feasible_output))
     front = posterior_front(scenario, history)
     text = front.as_csv(history.space)
-    n, n_completed = len(front.predictions), len(history.completed)
-    summary = f"{n} configuration{'s' * (n != 1)} on the posterior front, of {n_completed} completed evaluations"
+    n, n_completed = len(front.predictions), sum(row.is_completed for row in pooled(history))
+    summary = f"{n} configuration{'s' * (n != 1)} on the posterior front, of {n_completed} completed"
     if args.csv or not sys.stdout.isatty():
         print(text, end="")
         print(summary, file=sys.stderr)

@@ -88,7 +88,16 @@ def test_command_writes_the_file_of_the_run_again(tmp_path, capsys):
     printed = capsys.readouterr()
     assert printed.out == first == (tmp_path / "posterior_front.csv").read_text()
     n = len(first.splitlines()) - 1
-    assert f"{n} configurations on the posterior front, of 12 completed evaluations" in printed.err
+    assert f"{n} configurations on the posterior front, of 12 completed\n" in printed.err
+
+
+def test_command_counts_a_confirmed_configuration_once(tmp_path, capsys):
+    scenario = {**SCENARIO, "budget": {"evaluations": 12, "confirm_front": 4}}
+    optimize({**scenario, "optimizer": "bayesian"}, noisy, output_directory=tmp_path)
+    n_confirmed = sum(row["phase"] == "confirm" for row in rows_of(tmp_path / "history.csv"))
+    assert main(["pareto", str(tmp_path), "--posterior"]) == 0
+    assert n_confirmed > 0
+    assert f"of {12 - n_confirmed} completed\n" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("optimizer", ["bayesian", "random_search"])
