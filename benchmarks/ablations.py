@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 ABLATIONS: Mapping[str, Sequence[str]] = {
     "random forest": ("surrogate.type=random_forest",),
     "wide lengthscale prior": ("surrogate.lengthscale_location=1.414", "surrogate.lengthscale_width=1.732"),
+    "shorter lengthscales": ("surrogate.lengthscale_location=-1",),
     "noise held up": ("surrogate.noise_tail=2",),
     "noise-free model": ("surrogate.noise=false",),
     "restarted fits": ("surrogate.restart=true",),

@@ -29,7 +29,7 @@ from contenders import Contender, Task
 from efficiency_page import write_page
 from methods import DEFAULT, METHODS, PEERS, Method, ours, starter
 from one_run import COLUMNS, KEY, run
-from problems import CONSTRAINED, PROBLEMS, SEVERAL, SINGLE, SKILLS
+from problems import CONSTRAINED, EMULATED, PROBLEMS, SEVERAL, SINGLE, SKILLS
 from reporting import ResultTable
 from threadpoolctl import threadpool_limits
 
@@ -52,7 +52,10 @@ TABLES: Mapping[str, Table] = {
     "skills": Table(title="Skills: a plateau of failure, and the emulated robot tasks", problems=tuple(SKILLS)),
     "ablation": Table(
         title="The default method with one default changed",
-        problems=("branin", "hartmann6_noisy", "func2c", "branin_currin_noisy", "dtlz2", "chankong_haimes", "plateau"),
+        problems=(
+            *("branin", "hartmann6_noisy", "func2c", "branin_currin_noisy", "dtlz2", "chankong_haimes", "plateau"),
+            *EMULATED,
+        ),
         methods=(DEFAULT, *ABLATIONS),
     ),
 }

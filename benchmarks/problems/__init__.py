@@ -12,7 +12,7 @@ from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
 
-__all__ = ["CONSTRAINED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "Problem"]
+__all__ = ["CONSTRAINED", "EMULATED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "Problem"]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
 
