@@ -1,7 +1,8 @@
 """The robot tasks as cheap problems: interpolated between thousands of their rollouts.
 
-An evaluation takes microseconds instead of half a second, so methods can be compared on landscapes of skills over many
-seeds [1]_. What is found here must still hold for the rollouts.
+An evaluation takes less than a millisecond instead of half a second, so methods can be compared on landscapes of skills
+over many seeds [1]_. Most of the rollouts are where optimizers searched, so elsewhere cliffs are blurred more; what is
+found here must still hold for the rollouts.
 
 References
 ----------
