@@ -105,7 +105,7 @@ def draw(
             axes.yaxis.set_minor_formatter(NullFormatter())
             style.mark_design_end(axes, PROBLEMS[problem].design)
             axes.set_title(problem)
-            axes.set_ylabel("regret" if is_regret else "hypervolume lacking / 1")
+            axes.set_ylabel("regret" if is_regret else "share of hypervolume lacking")
             axes.set_xlabel("evaluations")
         for axes in panels[len(shown) :]:
             axes.set_visible(False)
