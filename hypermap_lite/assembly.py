@@ -292,6 +292,7 @@ def build_method(scenario: Scenario) -> Method:
         fallback=PriorSampling(uniform_share=0.0),
         epsilon=scenario.optimizer.options.get("epsilon") or 0.0,
         escapes=scenario.optimizer.options.get("escapes", 0),
+        boundary_factor=scenario.optimizer.options.get("boundary_factor", 1.0),
         separation=scenario.optimizer.options.get("separation") or 0.0,
     )
 

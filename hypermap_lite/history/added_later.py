@@ -18,6 +18,7 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.acquisition.weights.redraws": "0",
     "$.design_of_experiment.uniform_share": "0",
     "$.maximizer.smooth_levels": "0",
+    "$.optimizer.boundary_factor": "1",
     "$.optimizer.escapes": "0",
     "$.surrogate.categorical_prior": "false",
     "$.surrogate.lengthscale_location": json.dumps(math.sqrt(2.0)),

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
+from hypermap_lite.acquisition.boundary_weighted import BoundaryWeighted
 from hypermap_lite.acquisition.feasibility_weighted import (
     FeasibilitySearch,
     Improving,
@@ -20,8 +21,9 @@ from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.evaluation.outcome import MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, are_apart
-from hypermap_lite.objectives import reference_point_of, stated_or
+from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of, stated_or
 from hypermap_lite.optimizers.base import Optimizer
+from hypermap_lite.optimizers.boundary import boundary_factor
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
@@ -195,7 +197,7 @@ class BayesianOptimizer(Optimizer):
         for k in range(n_draws):
             if k:
                 context = replace(context, weights=self._weights(context.normalization, rng))
-            scorer = self._scorer(context, feasibility, guidance)
+            scorer = self._less_on_bounds(self._scorer(context, feasibility, guidance), context)
             suggestion = self._by_score(scorer, self._incumbents(context, mean), trial, rng, guidance)
             if suggestion is None:
                 break
@@ -243,6 +245,19 @@ class BayesianOptimizer(Optimizer):
         by_feasibility = self._method.feasibility_weighting
         return scorer if feasibility is None or by_feasibility is None else by_feasibility.weigh(scorer, feasibility)
 
+    def _less_on_bounds(self, scorer: Scorer, context: AcquisitionContext) -> Scorer:
+        """Return the scorer with a discount on the bounds of the space, if what it promised there did not come true.
+
+        That is known of improvements of an objective or of the hypervolume, not of a drawn trade-off.
+        """
+        acquisition, axes, m = self._method.acquisition, self.history.space.is_continuous, len(self.history.objectives)
+        is_promise = m == 1 or (m <= MAX_CLOSED_FORM and not acquisition.is_scalarizing)
+        if not acquisition.is_logarithmic or not is_promise or not axes.any():
+            return scorer
+        mean = context.posterior.predict(self.history.X()).mean
+        factor = boundary_factor(self.history, mean, self._method.boundary_factor)
+        return scorer if factor == 1 else BoundaryWeighted(inner=scorer, axes=axes, factor=factor)
+
     def _searching(self, feasibility: FeasibilityPosterior, guidance: Guidance) -> Scorer:
         """Return the search for the first feasible points, with the prior where it counts."""
         scorer = FeasibilitySearch(feasibility=feasibility)
@@ -269,6 +284,10 @@ class BayesianOptimizer(Optimizer):
         if best is None:
             return None
         configuration = space.decode(best.x[None])[0]
+        value = best.score
+        if isinstance(scorer, BoundaryWeighted):
+            # what the model promises, not what is believed of it
+            value -= float(scorer.log_weight(space.encode([configuration]))[0])
         return Suggestion(
             trial=trial,
             configuration=configuration,
@@ -276,7 +295,7 @@ class BayesianOptimizer(Optimizer):
             prior_weight=guidance.weight,
             prior_trust=guidance.trust,
             prior_of=guidance.belief.name,
-            acquisition_value=best.score,
+            acquisition_value=value,
         )
 
     def _context(self, rng: Rng, feasibility: FeasibilityPosterior | None) -> AcquisitionContext:

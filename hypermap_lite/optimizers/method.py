@@ -41,5 +41,9 @@ class Method:
     escapes: int = 3
     """Draws between two suggestions of a model that promises nothing and has found nothing; 0 for none."""
 
+    boundary_factor: float = 0.3
+    """Least factor of what a point promises, for each bound that it is on, while such promises are broken, in (0, 1]; 1
+    for none. See `optimizers.boundary`."""
+
     separation: float = 0.0
     """Smallest distance to a configuration under evaluation, in the largest coordinate difference; 0 for any."""

@@ -17,7 +17,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
     design = {"type": "prior_sampling", "uniform_share": 0.0} if has_priors else {"type": "random_sampling"}
     return {
         "design_of_experiment": design,
-        "optimizer": {"type": "bayesian", "escapes": 0},
+        "optimizer": {"type": "bayesian", "escapes": 0, "boundary_factor": 1.0},
         "surrogate": {
             "type": "gaussian_process",
             "categorical_prior": False,

@@ -16,6 +16,9 @@ INDENT = " " * 12
 NO_IMPROVEMENTS = ("upper_confidence_bound", "thompson_sampling")
 """Acquisition functions that do not tell how much a point promises."""
 
+HYPERVOLUME_IMPROVEMENT = "noisy_expected_hypervolume_improvement"
+"""The one that tells it of several objectives together."""
+
 CARE = ("prior_free", "safeguard", "make_up")
 """Options against misleading priors."""
 
@@ -148,6 +151,10 @@ def _method(scenario: Scenario) -> list[str]:
     escapes = scenario.optimizer.options.get("escapes")
     if escapes and (m == 1 or acquisition.function.type not in NO_IMPROVEMENTS):
         lines.append(f"  where the search stands still, up to {escapes} drawn uniformly between one and the next")
+    factor = scenario.optimizer.options.get("boundary_factor", 1.0)
+    is_promise = acquisition.function.type == HYPERVOLUME_IMPROVEMENT and m <= MAX_CLOSED_FORM
+    if factor < 1 and (is_promise or (m == 1 and acquisition.function.type not in NO_IMPROVEMENTS)):
+        lines.append(f"  what is promised on a bound counts {factor:g} of itself while such promises are broken")
     if separation := scenario.optimizer.options.get("separation"):
         lines.append(f"  at least {separation:g} of a range away from what is under evaluation")
     lines += last
