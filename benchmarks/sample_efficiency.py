@@ -51,7 +51,7 @@ TABLES: Mapping[str, Table] = {
     "constrained": Table(title="Two objectives with an unknown constraint", problems=tuple(CONSTRAINED)),
     "skills": Table(title="Skills: a plateau of failure, and the emulated robot tasks", problems=tuple(SKILLS)),
     "ablation": Table(
-        title="The default method with one default changed",
+        title="The default method, and with bounds like the rest and one default changed",
         problems=(
             *("branin", "hartmann6_noisy", "func2c", "branin_currin_noisy", "dtlz2", "chankong_haimes", "plateau"),
             *EMULATED,

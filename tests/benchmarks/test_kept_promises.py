@@ -34,14 +34,14 @@ def test_gains_of_the_suggestions_add_up_to_the_growth_of_the_run(benchmark, mon
     Y, reference_point = np.array(made[0].truths), np.array(problem.reference_point)
     growth = hypervolume(Y, reference_point) - hypervolume(Y[: problem.design], reference_point)
     assert len(steps) == 6
-    assert sum(given for _, given in steps) == pytest.approx(growth / problem.best)
-    assert all(promised > 0 for promised, _ in steps)
+    assert sum(step.given for step in steps) == pytest.approx(growth / problem.best)
+    assert all(step.promised > 0 for step in steps)
 
 
 def test_model_of_a_smooth_problem_keeps_its_promises_and_that_of_a_cliff_does_not(benchmark):
     kept = {}
     for name in ("vehicle_safety", "penicillin"):
-        promised, given = np.sum(list(benchmark.steps_of(short(benchmark, name, 6), 0)), axis=0)
+        promised, given, _ = np.sum(list(benchmark.steps_of(short(benchmark, name, 6), 0)), axis=0)
         kept[name] = given / promised
     assert kept["vehicle_safety"] > 0.5
     assert kept["penicillin"] < 0.2
@@ -53,3 +53,12 @@ def test_line_has_means_of_what_was_promised_and_the_share_that_was_given(benchm
         {"promised_0": "1", "given_0": "1", "promised_1": "1", "given_1": "2", "promised_2": "2", "given_2": "0"},
     ]
     assert benchmark.line_of("p", rows) == ("p", "2", "2", "50 %", "1", "150 %", "2", "0 %")
+
+
+def test_line_of_places_has_means_per_suggestion_and_the_share_of_the_promise(benchmark):
+    row = dict.fromkeys(benchmark.COLUMNS[3:], "0")
+    row |= {"suggestions_inside": "3", "promised_inside": "0.4", "given_inside": "0.3"}
+    row |= {"suggestions_on_bounds": "1", "promised_on_bounds": "0.5", "given_on_bounds": "0.05"}
+    assert benchmark.line_of_places("p", "m", [row, row]) == ("p", "m", "25 %", "0.1 (75 %)", "0.05 (10 %)")
+    nowhere = row | {"suggestions_on_bounds": "0"}
+    assert benchmark.line_of_places("p", "m", [nowhere])[2:] == ("0 %", "0.1 (75 %)", "")
