@@ -252,10 +252,11 @@ class BayesianOptimizer(Optimizer):
         """
         acquisition, axes, m = self._method.acquisition, self.history.space.is_continuous, len(self.history.objectives)
         is_promise = m == 1 or (m <= MAX_CLOSED_FORM and not acquisition.is_scalarizing)
-        if not acquisition.is_logarithmic or not is_promise or not axes.any():
+        least = self._method.boundary_factor
+        if least >= 1 or not acquisition.is_logarithmic or not is_promise or not axes.any():
             return scorer
         mean = context.posterior.predict(self.history.X()).mean
-        factor = boundary_factor(self.history, mean, self._method.boundary_factor)
+        factor = boundary_factor(self.history, mean, least)
         return scorer if factor == 1 else BoundaryWeighted(inner=scorer, axes=axes, factor=factor)
 
     def _searching(self, feasibility: FeasibilityPosterior, guidance: Guidance) -> Scorer:

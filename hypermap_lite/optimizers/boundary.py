@@ -3,8 +3,10 @@
 The variance of a stationary process grows towards the bounds of the space, the more so the more dimensions there are,
 because observations lie on one side only [1]_ [2]_. With a few dozen evaluations of a rough function the acquisition
 is largest there for that reason alone: on emulated robot skills half of the suggestions were on a bound, and one that
-was gave between a seventh and two fifths of what one inside gave. Where an optimum is on a bound nothing of the sort is
-seen. So it is for the evaluations to say.
+was gave between a seventh and two fifths of what one inside gave. Where the front is on bounds, suggestions there give
+what they promise. So it is for the evaluations to say.
+
+A promise is an expectation, and few bold steps give theirs; they count as broken, on purpose.
 
 References
 ----------
@@ -25,13 +27,15 @@ import numpy as np
 from hypermap_lite.acquisition.boundary_weighted import nearness
 from hypermap_lite.evaluation.outcome import MODEL
 from hypermap_lite.history.history import History
-from hypermap_lite.objectives import reference_point_of
+from hypermap_lite.objectives import reference_point_of, stated_or
+from hypermap_lite.optimizers.models import MIN_COMPLETED
 from hypermap_lite.pareto.hypervolume import hypervolume, infer_reference_point
 from hypermap_lite.scalarization.base import Normalization
 from hypermap_lite.typing import FloatArray
 
 NEAR: Final = 0.5
-"""Sum of a point's nearnesses to bounds from which on it counts as being on one."""
+"""Sum of a point's nearnesses to bounds from which on it counts as being on one: within 0.06 of one bound, or farther
+from several. In six dimensions that is the case for 64 % of all points, in two for 24 %."""
 
 KEPT: Final = 0.3
 """A promise of which less than this share comes true is broken."""
@@ -49,14 +53,15 @@ def boundary_factor(history: History, mean: FloatArray, least: float) -> float:
     Parameters
     ----------
     history
-        The evaluations; suggestions that a prior had a part in are no evidence, for their promise is not known.
+        The evaluations. Suggestions that a prior had a part in are no evidence, for their promise is not known, and
+        neither are those before there was a model of the objectives, which promised feasibility.
     mean
         The objectives of those that completed, by the model of now, so that luck is not taken for a kept promise, shape
         (n, m).
     least
         Factor where next to no promise is kept, in (0, 1].
     """
-    if least >= 1 or len(mean) < 2:
+    if least >= 1 or len(mean) < MIN_COMPLETED:
         return 1.0
     kept = list(_kept(history, mean))
     share = (sum(kept) + 0.5) / (len(kept) + 1)
@@ -68,24 +73,25 @@ def _kept(history: History, mean: FloatArray) -> Iterator[bool]:
     """Yield whether each suggestion on a bound kept its promise; one that did not complete gave nothing."""
     space, observed = history.space, history.Y()
     stated = reference_point_of(history.objectives)
-    reference_point = infer_reference_point(mean) if stated is None and mean.shape[1] > 1 else stated
+    reference_point = stated_or(history.objectives, infer_reference_point(mean)) if mean.shape[1] > 1 else None
     is_near = nearness(history.X_all(), space.is_continuous).sum(axis=1) >= NEAR
     n = 0
     for evaluation, near in zip(history, is_near, strict=True):
         k, n = n, n + evaluation.is_completed
         suggestion = evaluation.suggestion
         value = suggestion.acquisition_value
-        if not near or suggestion.phase != MODEL or suggestion.prior_weight or value is None or not k:
+        if not near or suggestion.phase != MODEL or suggestion.prior_weight or value is None or k < MIN_COMPLETED:
             continue
         if not evaluation.is_completed or (mean[:k] <= mean[k]).all(axis=1).any():
             yield False
             continue
         scale = Normalization.of_front(observed[:k], stated).scale
-        yield _growth(mean[:k], mean[k], reference_point) > KEPT * math.exp(value) * float(np.prod(scale))
+        corner = None if reference_point is None else reference_point / scale
+        yield _growth(mean[:k] / scale, mean[k] / scale, corner) > KEPT * math.exp(value)
 
 
 def _growth(before: FloatArray, y: FloatArray, reference_point: FloatArray | None) -> float:
     """Return the hypervolume, or with one objective the improvement, that y, shape (m,), adds to n points."""
-    if len(y) == 1 or reference_point is None:
+    if reference_point is None:
         return float(before[:, 0].min() - y[0])
     return hypervolume(np.vstack([before, y]), reference_point) - hypervolume(before, reference_point)
