@@ -23,7 +23,7 @@ from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, are_apart
 from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of, stated_or
 from hypermap_lite.optimizers.base import Optimizer
-from hypermap_lite.optimizers.boundary import boundary_factor
+from hypermap_lite.optimizers.boundary import FEWEST_AXES, boundary_factor
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
@@ -253,7 +253,7 @@ class BayesianOptimizer(Optimizer):
         acquisition, axes, m = self._method.acquisition, self.history.space.is_continuous, len(self.history.objectives)
         is_promise = m == 1 or (m <= MAX_CLOSED_FORM and not acquisition.is_scalarizing)
         least = self._method.boundary_factor
-        if least >= 1 or not acquisition.is_logarithmic or not is_promise or not axes.any():
+        if least >= 1 or not acquisition.is_logarithmic or not is_promise or axes.sum() < FEWEST_AXES:
             return scorer
         mean = context.posterior.predict(self.history.X()).mean
         factor = boundary_factor(self.history, mean, least)

@@ -19,6 +19,9 @@ NO_IMPROVEMENTS = ("upper_confidence_bound", "thompson_sampling")
 HYPERVOLUME_IMPROVEMENT = "noisy_expected_hypervolume_improvement"
 """The one that tells it of several objectives together."""
 
+FEWEST_REAL = 3
+"""Real parameters from which on promises on bounds are checked."""
+
 CARE = ("prior_free", "safeguard", "make_up")
 """Options against misleading priors."""
 
@@ -153,7 +156,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append(f"  where the search stands still, up to {escapes} drawn uniformly between one and the next")
     factor = scenario.optimizer.options.get("boundary_factor", 1.0)
     is_promise = acquisition.function.type == HYPERVOLUME_IMPROVEMENT and m <= MAX_CLOSED_FORM
-    if factor < 1 and (is_promise or (m == 1 and acquisition.function.type not in NO_IMPROVEMENTS)):
+    is_promise = is_promise or (m == 1 and acquisition.function.type not in NO_IMPROVEMENTS)
+    if factor < 1 and is_promise and sum(p.parameter_type == "real" for p in scenario.parameters) >= FEWEST_REAL:
         lines.append(f"  what is promised on a bound counts {factor:g} of itself while such promises are broken")
     if separation := scenario.optimizer.options.get("separation"):
         lines.append(f"  at least {separation:g} of a range away from what is under evaluation")

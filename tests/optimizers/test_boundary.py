@@ -208,3 +208,11 @@ def test_a_resumed_run_discounts_the_same(stop: int) -> None:
 def test_trade_offs_that_are_drawn_are_left_alone(acquisition: dict[str, Any]) -> None:
     without, with_it = (run(on_six_axes(f, acquisition=acquisition), 14, function=rough) for f in (1.0, 0.01))
     assert np.array_equal(without.history.X(), with_it.history.X())
+
+
+def test_two_axes_are_left_alone() -> None:
+    def outcome(factor: float) -> Any:
+        scenario = on_six_axes(factor) | {"input_parameters": {"a": UNIT, "b": UNIT}}
+        return run(scenario, 22, function=lambda c: rough({**dict.fromkeys("cdef", 0.5), **c})).history.X()
+
+    assert np.array_equal(outcome(1.0), outcome(0.01))
