@@ -32,8 +32,8 @@ class ResultTable:
 
     def has(self, case: Mapping[str, Any]) -> bool:
         """Tell whether a case has its row."""
-        wanted = [str(case[name]) for name in self.key]
-        return any([str(row[name]) for name in self.key] == wanted for row in self.rows)
+        wanted = [_text(case[name]) for name in self.key]
+        return any([_text(row[name]) for name in self.key] == wanted for row in self.rows)
 
     def forget(self, column: str, values: Sequence[str]) -> None:
         """Delete the rows that have one of these values in a column."""
@@ -47,10 +47,7 @@ class ResultTable:
         """Measure a case, unless it has its row."""
         if self.has(case):
             return
-        row = {
-            name: f"{value:.6g}" if isinstance(value, float) else value
-            for name, value in measure(*case.values()).items()
-        }
+        row = {name: _text(value) for name, value in measure(*case.values()).items()}
         self._append(row)
         self.rows.append(dict(row))
 
@@ -60,6 +57,11 @@ class ResultTable:
         """Write the summary as Markdown."""
         lines = [f"# {title}", "", f"    {command}", "", text, "", *markdown_table(header, rows)]
         path.write_text("\n".join(lines) + "\n")
+
+
+def _text(value: Any) -> str:
+    """Return a value as it stands in the table."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def markdown_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
