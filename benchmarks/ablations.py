@@ -1,8 +1,7 @@
 """Variants of the default method: what a default is worth.
 
 A variant is a list of changes to the scenario, as `--set` takes them. The first takes bounds of the space like the rest
-of it. The others do so, too, and change one default more, so they are compared with the first: what the discount on
-bounds adds is chance enough to hide what they add.
+of it. The others do so, too, and change one default more, so each is to be compared with the first.
 """
 
 from __future__ import annotations

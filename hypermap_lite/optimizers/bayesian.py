@@ -23,7 +23,7 @@ from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, are_apart
 from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of, stated_or
 from hypermap_lite.optimizers.base import Optimizer
-from hypermap_lite.optimizers.boundary import FEWEST_AXES, boundary_factor
+from hypermap_lite.optimizers.boundary import boundary_factor
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
@@ -36,6 +36,7 @@ from hypermap_lite.pareto.ranking import crowding_distances, non_dominated_ranks
 from hypermap_lite.priors.beliefs import Belief
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization
+from hypermap_lite.space.real import FEWEST_CHECKED
 from hypermap_lite.surrogates.base import Posterior
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.typing import FloatArray, Rng
@@ -253,7 +254,7 @@ class BayesianOptimizer(Optimizer):
         acquisition, axes, m = self._method.acquisition, self.history.space.is_continuous, len(self.history.objectives)
         is_promise = m == 1 or (m <= MAX_CLOSED_FORM and not acquisition.is_scalarizing)
         least = self._method.boundary_factor
-        if least >= 1 or not acquisition.is_logarithmic or not is_promise or axes.sum() < FEWEST_AXES:
+        if least >= 1 or not acquisition.is_logarithmic or not is_promise or axes.sum() < FEWEST_CHECKED:
             return scorer
         mean = context.posterior.predict(self.history.X()).mean
         factor = boundary_factor(self.history, mean, least)

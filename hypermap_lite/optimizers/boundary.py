@@ -33,10 +33,6 @@ from hypermap_lite.pareto.hypervolume import hypervolume, infer_reference_point
 from hypermap_lite.scalarization.base import Normalization
 from hypermap_lite.typing import FloatArray
 
-FEWEST_AXES: Final = 3
-"""With fewer real axes bounds are like the rest: the variance grows little towards them, and a few broken promises that
-were due to noise would cost more than is saved (BraninCurrin with noise: 0.964 instead of 0.973 of the hypervolume)."""
-
 NEAR: Final = 0.5
 """Sum of a point's nearnesses to bounds from which on it counts as being on one: within 0.06 of one bound, or farther
 from several. In six dimensions that is the case for 64 % of all points, in three for 35 %."""

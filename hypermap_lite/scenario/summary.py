@@ -8,6 +8,7 @@ from typing import Any
 
 from hypermap_lite.objectives import MAX_CLOSED_FORM
 from hypermap_lite.scenario.model import ComponentSpec, ObjectivePriors, OutputSpec, ParameterSpec, Scenario
+from hypermap_lite.space.real import FEWEST_CHECKED
 from hypermap_lite.typing import as_argument
 
 INDENT = " " * 12
@@ -18,9 +19,6 @@ NO_IMPROVEMENTS = ("upper_confidence_bound", "thompson_sampling")
 
 HYPERVOLUME_IMPROVEMENT = "noisy_expected_hypervolume_improvement"
 """The one that tells it of several objectives together."""
-
-FEWEST_REAL = 3
-"""Real parameters from which on promises on bounds are checked."""
 
 CARE = ("prior_free", "safeguard", "make_up")
 """Options against misleading priors."""
@@ -157,7 +155,7 @@ def _method(scenario: Scenario) -> list[str]:
     factor = scenario.optimizer.options.get("boundary_factor", 1.0)
     is_promise = acquisition.function.type == HYPERVOLUME_IMPROVEMENT and m <= MAX_CLOSED_FORM
     is_promise = is_promise or (m == 1 and acquisition.function.type not in NO_IMPROVEMENTS)
-    if factor < 1 and is_promise and sum(p.parameter_type == "real" for p in scenario.parameters) >= FEWEST_REAL:
+    if factor < 1 and is_promise and sum(p.parameter_type == "real" for p in scenario.parameters) >= FEWEST_CHECKED:
         lines.append(f"  what is promised on a bound counts {factor:g} of itself while such promises are broken")
     if separation := scenario.optimizer.options.get("separation"):
         lines.append(f"  at least {separation:g} of a range away from what is under evaluation")
