@@ -17,6 +17,7 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.acquisition.weights.ends": "0",
     "$.acquisition.weights.redraws": "0",
     "$.design_of_experiment.uniform_share": "0",
+    "$.maximizer.joint_tolerance": "0",
     "$.maximizer.smooth_levels": "0",
     "$.optimizer.boundary_factor": "1",
     "$.optimizer.escapes": "0",

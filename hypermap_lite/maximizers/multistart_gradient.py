@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,9 @@ MAX_ITERATIONS = 50
 ROUNDS = 3
 """Alternations between real and discrete axes."""
 
+LAST_DIGITS = 1e7 * sys.float_info.epsilon
+"""Share of the scores that no step has to add less than, as SciPy has it."""
+
 BISECTIONS = 30
 """Halvings of the way from a start to a point beyond what is allowed."""
 
@@ -42,8 +46,8 @@ class MultistartGradient:
     and ordinals of many levels take part in both: the ascent leads them far, the steps to the right level. An ascent
     that leaves what constraints allow ends at their edge; steps on all axes go on from there.
 
-    All starts are one problem, the sum of their scores, so that each step evaluates them together. A score without
-    gradient is left to `LocalSearch`.
+    All starts are one problem, the sum of their scores, so that each step evaluates them together. Once that gets slow,
+    the best of them goes on alone, in fewer and cheaper steps. A score without gradient is left to `LocalSearch`.
     """
 
     candidates: int = 1024
@@ -55,10 +59,17 @@ class MultistartGradient:
     smooth_levels: int = 50
     """From so many levels on an ordered discrete axis is climbed as if real, then by steps; 0: no such axis is."""
 
+    joint_tolerance: float = 1e-3
+    """All climb until a step adds less than this share of their scores, then the best alone; 0: all to the end."""
+
     def __post_init__(self) -> None:
         check_options(self.candidates, self.starts)
         if self.smooth_levels < 0:
             raise ScenarioError("$.smooth_levels", f"there are {self.smooth_levels} levels", allowed="an integer >= 0")
+        if not 0 <= self.joint_tolerance < 1:
+            raise ScenarioError(
+                "$.joint_tolerance", f"the tolerance is {self.joint_tolerance:g}", allowed="a number in [0, 1)"
+            )
 
     def maximize(self, problem: MaximizationProblem) -> Maximum | None:
         """Return the best new point found; None if the space holds no other."""
@@ -83,29 +94,35 @@ class MultistartGradient:
         return best_unseen(problem, points, np.concatenate([problem.score(refined), scores]))
 
     def _ascend(self, problem: MaximizationProblem, starts: FloatArray) -> FloatArray:
-        """Improve k starts along the axes that gradients lead along, shape (k, d)."""
-        from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
-
+        """Improve k starts along the axes that gradients lead along, shape (k, d); the best of them to the end."""
         is_free = is_smooth(problem.space, self.smooth_levels)
-
-        def negative(flat: FloatArray) -> tuple[float, FloatArray]:
-            X = starts.copy()
-            X[:, is_free] = flat.reshape(len(starts), -1)
-            score, gradient = problem.scorer.with_gradient(X)
-            usable = np.isfinite(score) & np.isfinite(gradient).all(axis=1)
-            score, gradient = np.where(usable, score, WORST), np.where(usable[:, None], gradient, 0.0)
-            return -float(score.sum()), -gradient[:, is_free].ravel()
-
-        start = starts[:, is_free].ravel()
-        bounds = [(0.0, 1.0)] * len(start)
-        result = minimize(
-            negative, start, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": MAX_ITERATIONS}
-        )
-        moved = starts.copy()
-        moved[:, is_free] = np.clip(result.x, 0.0, 1.0).reshape(len(starts), -1)
+        moved = _climb(problem, starts, is_free, self.joint_tolerance or LAST_DIGITS)
+        if self.joint_tolerance and len(moved) > 1:
+            best = [int(problem.score(moved).argmax())]
+            moved[best] = _climb(problem, moved[best], is_free, LAST_DIGITS)
         moved = problem.space.snap(back_to_allowed(problem.space, starts, moved))
         better = (problem.score(moved) > problem.score(starts)) & problem.space.is_allowed(moved)
         return np.where(better[:, None], moved, starts)
+
+
+def _climb(problem: MaximizationProblem, starts: FloatArray, is_free: BoolArray, tolerance: float) -> FloatArray:
+    """Return where L-BFGS-B leads from k starts, shape (k, d), until a step adds less than a share of their scores."""
+    from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
+
+    def negative(flat: FloatArray) -> tuple[float, FloatArray]:
+        X = starts.copy()
+        X[:, is_free] = flat.reshape(len(starts), -1)
+        score, gradient = problem.scorer.with_gradient(X)
+        usable = np.isfinite(score) & np.isfinite(gradient).all(axis=1)
+        score, gradient = np.where(usable, score, WORST), np.where(usable[:, None], gradient, 0.0)
+        return -float(score.sum()), -gradient[:, is_free].ravel()
+
+    start = starts[:, is_free].ravel()
+    options = {"maxiter": MAX_ITERATIONS, "ftol": tolerance}
+    result = minimize(negative, start, jac=True, method="L-BFGS-B", bounds=[(0.0, 1.0)] * len(start), options=options)
+    moved = starts.copy()
+    moved[:, is_free] = np.clip(result.x, 0.0, 1.0).reshape(len(starts), -1)
+    return moved
 
 
 def is_smooth(space: SearchSpace, many: int) -> BoolArray:

@@ -27,7 +27,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "lengthscale_width": math.sqrt(3.0),
             "restart": True,
         },
-        "maximizer": {"type": "multistart_gradient", "smooth_levels": 0},
+        "maximizer": {"type": "multistart_gradient", "smooth_levels": 0, "joint_tolerance": 0.0},
         "acquisition": {
             "type": "noisy_expected_improvement",
             "screening": 0,

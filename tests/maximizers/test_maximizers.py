@@ -218,6 +218,38 @@ def test_many_levels_are_climbed_by_gradients_and_ended_by_steps() -> None:
     assert bowl.n_asked < 5_000  # by steps alone 11,000
 
 
+class Valley(Bowl):
+    """A curved ridge, steep across and flat along, whose maximum 1 takes many steps to reach."""
+
+    n_asked = 0
+
+    def __call__(self, X: np.ndarray) -> np.ndarray:
+        return 1 - (30 * (X[:, 1] - X[:, 0] ** 2) ** 2 + (X[:, 0] - 0.7) ** 2)
+
+    def with_gradient(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        self.n_asked += len(X)
+        across = 60 * (X[:, 1] - X[:, 0] ** 2)
+        return self(X), np.stack([2 * across * X[:, 0] - 2 * (X[:, 0] - 0.7), -across, 0 * X[:, 2]], axis=1)
+
+
+def test_best_start_alone_climbs_to_the_end() -> None:
+    asked = []
+    for tolerance in (0.0, 1e-3):
+        valley = Valley(np.zeros(3))
+        maximizer = MAXIMIZERS["multistart_gradient"](candidates=64, joint_tolerance=tolerance)
+        found = maximizer.maximize(problem(REAL, valley))
+        assert found is not None
+        assert found.score == pytest.approx(1.0, abs=1e-6)
+        asked.append(valley.n_asked)
+    assert asked[1] < 0.7 * asked[0]
+
+
+@pytest.mark.parametrize("tolerance", [-1e-9, 1.0])
+def test_impossible_tolerance_is_refused(tolerance: float) -> None:
+    with pytest.raises(ScenarioError, match="joint_tolerance"):
+        MAXIMIZERS["multistart_gradient"](joint_tolerance=tolerance)
+
+
 def test_twenty_categories_are_maximized_without_their_combinations() -> None:
     space = SearchSpace(tuple(CategoricalParameter(name=f"c{i}", values=tuple("abcdefghij")) for i in range(20)))
     worth = np.random.default_rng(0).standard_normal((20, 10))
