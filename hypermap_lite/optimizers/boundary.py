@@ -34,8 +34,8 @@ from hypermap_lite.scalarization.base import Normalization
 from hypermap_lite.typing import FloatArray
 
 NEAR: Final = 0.5
-"""Sum of a point's nearnesses to bounds from which on it counts as being on one: within 0.06 of one bound, or farther
-from several. In six dimensions that is the case for 64 % of all points, in three for 35 %."""
+"""Nearness to a bound from which on a point counts as being on it: within 0.06 of it. In three dimensions that is the
+case for 31 % of all points, in six for 53 %, in ten for 71 %."""
 
 KEPT: Final = 0.3
 """A promise of which less than this share comes true is broken."""
@@ -74,7 +74,7 @@ def _kept(history: History, mean: FloatArray) -> Iterator[bool]:
     space, observed = history.space, history.Y()
     stated = reference_point_of(history.objectives)
     reference_point = stated_or(history.objectives, infer_reference_point(mean)) if mean.shape[1] > 1 else None
-    is_near = nearness(history.X_all(), space.is_continuous).sum(axis=1) >= NEAR
+    is_near = nearness(history.X_all(), space.is_continuous).max(axis=1) >= NEAR
     n = 0
     for evaluation, near in zip(history, is_near, strict=True):
         k, n = n, n + evaluation.is_completed
