@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import cProfile
+import math
 import pstats
 import statistics
 import subprocess
@@ -23,9 +24,13 @@ import numpy as np
 from reporting import ResultTable, machine, markdown_table
 
 from hypermap_lite import Evaluation, Optimizer, State
-from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.evaluation.outcome import DESIGN, MODEL, Suggestion
 
 DIMENSION = 6
+DESIGN_POINTS = 12
+PROMISE = math.log(1e-2)
+"""Log of the growth, in units of the front's range, that each suggestion is said to have promised."""
+
 SIZES = (20, 50, 60, 100, 200)
 PROFILED = (60, 200)
 METHODS: dict[str, dict[str, Any]] = {
@@ -59,16 +64,18 @@ def dtlz2(x: np.ndarray) -> dict[str, float]:
 
 
 def evaluations(n: int, seed: int) -> list[Evaluation]:
-    """Return n evaluations as a run leaves them: a spread-out design, then points around the front."""
+    """Return n evaluations as a run leaves them: a spread-out design, then points around the front, with promises."""
     rng = np.random.default_rng(seed)
     X = rng.random((n, DIMENSION))
-    X[12:, 1:] = np.clip(0.5 + 0.15 * rng.standard_normal((max(n - 12, 0), DIMENSION - 1)), 0, 1)
+    n_model = max(n - DESIGN_POINTS, 0)
+    X[DESIGN_POINTS:, 1:] = np.clip(0.5 + 0.15 * rng.standard_normal((n_model, DIMENSION - 1)), 0, 1)
     return [
         Evaluation(
             suggestion=Suggestion(
                 trial=i,
                 configuration={f"x{j}": float(v) for j, v in enumerate(x)},
-                phase="design" if i < 12 else "model",
+                phase=DESIGN if i < DESIGN_POINTS else MODEL,
+                acquisition_value=None if i < DESIGN_POINTS else PROMISE,
             ),
             state=State.COMPLETED,
             values=dtlz2(x),
@@ -88,7 +95,7 @@ def before_a_suggestion(what: str, n: int, repeat: int) -> Optimizer:
         "seed": repeat,
         "input_parameters": {f"x{j}": {"parameter_type": "real", "values": [0, 1]} for j in range(DIMENSION)},
         "objectives": [{"name": name} for name in names],
-        "design_of_experiment": {"number_of_samples": 12},
+        "design_of_experiment": {"number_of_samples": DESIGN_POINTS},
         "budget": {"evaluations": n + 10},
         **METHODS.get(what, {}),
     }
