@@ -1,7 +1,8 @@
 """Variants of the default method: what a default is worth.
 
-A variant is a list of changes to the scenario, as `--set` takes them. The first takes bounds of the space like the rest
-of it. The others do so, too, and change one default more, so each is to be compared with the first.
+A variant is a list of changes to the scenario, as `--set` takes them. The first two take bounds of the space like the
+rest of it, and nothing from infeasible evaluations. The others take bounds so, too, and change one default more, so
+each is to be compared with the first.
 """
 
 from __future__ import annotations
@@ -28,5 +29,6 @@ CHANGES: Mapping[str, Sequence[str]] = {
 }
 ABLATIONS: Mapping[str, Sequence[str]] = {
     "bounds like the rest": PLAIN,
+    "infeasible values ignored": ("surrogate.learn_infeasible=false",),
     **{name: (*PLAIN, *changes) for name, changes in CHANGES.items()},
 }

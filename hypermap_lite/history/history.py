@@ -181,6 +181,6 @@ class History:
 
 
 def objectives_of(evaluations: Sequence[Evaluation], objectives: Sequence[Objective]) -> FloatArray:
-    """Return the objectives of completed evaluations, to be minimized and cut at 1e150 in size, shape (n, m)."""
+    """Return the objectives of evaluations with all of them, to be minimized and cut at 1e150 in size, shape (n, m)."""
     rows = [values_of(objectives, e.values) for e in evaluations]
     return np.clip(np.array(rows).reshape(len(rows), len(objectives)), -LARGEST, LARGEST)

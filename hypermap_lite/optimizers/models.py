@@ -9,8 +9,9 @@ import numpy as np
 
 from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighting
 from hypermap_lite.evaluation.outcome import Suggestion
-from hypermap_lite.history.history import History
+from hypermap_lite.history.history import History, objectives_of
 from hypermap_lite.objectives import reference_point_of
+from hypermap_lite.optimizers.beside import telling
 from hypermap_lite.optimizers.prior_trust import Evidence
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.surrogates.base import Posterior, Surrogate
@@ -52,7 +53,7 @@ class Models:
         self._feasibility_weighting = feasibility_weighting
         self._seed = seed
         self._warm_starts: dict[int, Any] = {}
-        self._posterior_of: tuple[int, Posterior] | None = None
+        self._posterior_of: tuple[tuple[int, int], Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
     def observed(self, n: int | None = None) -> tuple[FloatArray, FloatArray]:
@@ -69,15 +70,25 @@ class Models:
     def posterior(self) -> Posterior:
         """Return what is known of the objectives after the completed evaluations, of which there must be one."""
         n = len(self._history)
-        # a row that did not complete changes what is pooled, and nothing else
+        # a row that did not complete changes what is pooled, and what is known beside, but nothing else
         rows = n if self._surrogate.noise_from_replicates else len(self._history.completed)
-        if self._posterior_of is None or self._posterior_of[0] != rows:
-            self._posterior_of = (rows, self._posterior_after(n))
+        key = (rows, len(self._beside(n)[0]))
+        if self._posterior_of is None or self._posterior_of[0] != key:
+            self._posterior_of = (key, self._posterior_after(n))
         return self._posterior_of[1]
+
+    def _beside(self, n: int) -> tuple[FloatArray, FloatArray]:
+        """Return what else the surrogate learns from among the first n rows: infeasible evaluations."""
+        history = self._history
+        rows = telling(list(history)[:n], history.objectives) if self._surrogate.learn_infeasible else []
+        return history.space.encode([row.configuration for row in rows]), objectives_of(rows, history.objectives)
 
     def _posterior_after(self, n: int) -> Posterior:
         """Return the posterior given the first n rows of the history."""
-        return self._fit_samples(n) if self._surrogate.noise_from_replicates else self._fit(*self.observed(n))
+        beside = self._beside(n)
+        if self._surrogate.noise_from_replicates:
+            return self._fit_samples(n, beside)
+        return self._fit(*self.observed(n), beside)
 
     def evidence(self, n: int) -> Evidence | None:
         """Return what was known when the history had n rows; None if next to nothing."""
@@ -115,18 +126,19 @@ class Models:
             self._feasibility_of = (len(X), posterior)
         return self._feasibility_of[1]
 
-    def _fit(self, X: FloatArray, Y: FloatArray) -> Posterior:
+    def _fit(self, X: FloatArray, Y: FloatArray, beside: tuple[FloatArray, FloatArray]) -> Posterior:
+        """Fit to n completed evaluations and what is known beside; milestones, to completed ones alone."""
         n, start, growth = len(X), None, self._surrogate.warm_start_growth
         for k in () if growth is None else milestones(n, growth):
             if k not in self._warm_starts:
                 self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start, anew=True).hyperparameters
             start = self._warm_starts[k]
-        posterior = self._fit_from(X, Y, start, anew=is_milestone(n, growth))
-        if is_milestone(n, growth):
+        posterior = self._fit_from(X, Y, start, beside=beside, anew=is_milestone(n, growth))
+        if is_milestone(n, growth) and not len(beside[0]):
             self._warm_starts[n] = posterior.hyperparameters  # what a later call would work out again
         return posterior
 
-    def _fit_samples(self, n: int) -> Posterior:
+    def _fit_samples(self, n: int, beside: tuple[FloatArray, FloatArray]) -> Posterior:
         """Fit to one row per distinct configuration among the first n rows, with the noise of its mean.
 
         The warm start of a milestone comes from the rows up to its last new configuration: later ones may repeat an
@@ -141,13 +153,25 @@ class Models:
                 self._warm_starts[k] = fitted.hyperparameters
             start = self._warm_starts[k]
         anew = is_milestone(len(samples.X), growth)
-        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance, anew=anew)
+        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance, beside=beside, anew=anew)
 
     def _fit_from(
-        self, X: FloatArray, Y: FloatArray, start: Any, noise_variance: FloatArray | None = None, *, anew: bool = False
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        start: Any,
+        noise_variance: FloatArray | None = None,
+        *,
+        beside: tuple[FloatArray, FloatArray] | None = None,
+        anew: bool = False,
     ) -> Posterior:
         rng = generator(self._seed, Stream.SUGGESTION, 0, len(X))
-        space = self._history.space
+        space, n_beside = self._history.space, 0
+        if beside is not None and (n_beside := len(beside[0])):
+            X, Y = np.vstack([X, beside[0]]), np.vstack([Y, beside[1]])
+            if noise_variance is not None:
+                usual = np.median(noise_variance, axis=0)
+                noise_variance = np.vstack([noise_variance, np.broadcast_to(usual, (n_beside, len(usual)))])
         return self._surrogate.fit(
             X,
             Y,
@@ -157,6 +181,7 @@ class Models:
             anew=anew,
             permutations=space.permutations,
             noise_variance=noise_variance,
+            n_beside=n_beside,
         )
 
 

@@ -26,6 +26,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "lengthscale_location": math.sqrt(2.0),
             "lengthscale_width": math.sqrt(3.0),
             "restart": True,
+            "learn_infeasible": False,
         },
         "maximizer": {"type": "multistart_gradient", "smooth_levels": 0, "joint_tolerance": 0.0},
         "acquisition": {

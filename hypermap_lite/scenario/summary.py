@@ -26,6 +26,9 @@ CARE = ("prior_free", "safeguard", "make_up")
 UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
+SAID_IN_WORDS = ("learn_infeasible",)
+"""Options that have a sentence of their own."""
+
 
 def summarize(scenario: Scenario) -> str:
     """Return a page that says what will be run: parameters, objectives, method and why, budget, evaluator, output."""
@@ -165,6 +168,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append("infeasible evaluations: not in the acquisition (feasibility_weighting is none)")
     elif scenario.feasible_output is not None:
         lines.append("acquisition weighted by the probability of being feasible")
+    if scenario.feasible_output is not None and scenario.surrogate.options.get("learn_infeasible"):
+        lines.append("objective values of infeasible evaluations inform the model, unless they look like placeholders")
     return [*lines, _prior_use(scenario)]
 
 
@@ -241,7 +246,7 @@ def _options(options: Mapping[str, Any]) -> str:
     given = [
         f"{key}={_value(value)}"
         for key, value in options.items()
-        if value is not None and (value or key not in UNSAID_IF_OFF)
+        if value is not None and (value or key not in UNSAID_IF_OFF) and key not in SAID_IN_WORDS
     ]
     return f"({', '.join(given)})" if given else ""
 

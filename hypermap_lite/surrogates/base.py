@@ -75,7 +75,7 @@ class Fantasies:
     """S joint draws of the noise-free objectives at b base points, and what each draw implies elsewhere."""
 
     values: FloatArray
-    """The draws, shape (S, b, m)."""
+    """The draws at those base points that may be on the front, shape (S, b, m)."""
 
     field: Field
     """Predictions given each draw."""
@@ -107,7 +107,10 @@ class Posterior(Protocol):
         ...
 
     def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
-        """Draw the noise-free objectives at all observed and pending points n times, jointly."""
+        """Draw the noise-free objectives at all observed and pending points n times, jointly.
+
+        The draws at points that only inform are not returned.
+        """
         ...
 
     def sample_path(self, rng: Rng, features: int) -> Field:
@@ -128,6 +131,11 @@ class Surrogate(Protocol):
         """Whether `fit` wants one row per configuration, with the noise of its mean."""
         ...
 
+    @property
+    def learn_infeasible(self) -> bool:
+        """Whether objective values of infeasible evaluations are among what it is fitted to."""
+        ...
+
     def fit(
         self,
         X: FloatArray,
@@ -139,6 +147,7 @@ class Surrogate(Protocol):
         anew: bool = False,
         permutations: Permutations = NO_PERMUTATIONS,
         noise_variance: FloatArray | None = None,
+        n_beside: int = 0,
     ) -> Posterior:
         """Fit m objectives to n evaluations.
 
@@ -161,6 +170,8 @@ class Surrogate(Protocol):
         noise_variance
             Variance of the noise in each row of `Y`, in its units squared, shape (n, m), as far as it is known from
             replicates; None where it must be learned. A surrogate may ignore it.
+        n_beside
+            How many of the last rows only inform: they cannot be on the front, being infeasible.
         """
         ...
 

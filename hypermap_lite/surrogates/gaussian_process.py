@@ -73,6 +73,9 @@ class GaussianProcess:
     """Whether the noise of each configuration is taken from its replicates, where there are several, and only a factor
     near one is learned. Rows of one configuration are then one."""
 
+    learn_infeasible: bool = True
+    """Whether it is fitted to the objective values of infeasible evaluations, too."""
+
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
             raise ScenarioError("$.noise_floor", f"the floor is {self.noise_floor}", allowed="a number > 0, at most 1")
@@ -101,6 +104,7 @@ class GaussianProcess:
         anew: bool = False,
         permutations: Permutations = NO_PERMUTATIONS,
         noise_variance: FloatArray | None = None,
+        n_beside: int = 0,
     ) -> Posterior:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
         outputs = [Standardized.of(column) for column in Y.T]
@@ -124,7 +128,8 @@ class GaussianProcess:
                 starts.append(prior.mode())
             best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
             processes.append(Process.condition(X, output, best, is_ordered, permutations, known))
-        return GaussianProcessPosterior(processes=tuple(processes))
+        may_be_best = np.arange(len(X)) < len(X) - n_beside
+        return GaussianProcessPosterior(processes=tuple(processes), may_be_best=may_be_best)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,6 +137,9 @@ class GaussianProcessPosterior:
     """What the processes know of m objectives."""
 
     processes: tuple[Process, ...]
+
+    may_be_best: BoolArray
+    """Which of the evaluations may be on the front, shape (n,); the others only inform."""
 
     @property
     def hyperparameters(self) -> tuple[Hyperparameters, ...]:
@@ -171,7 +179,8 @@ class GaussianProcessPosterior:
             believed.append(
                 Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations, known)
             )
-        return GaussianProcessPosterior(processes=tuple(believed))
+        may_be_best = np.append(self.may_be_best, np.ones(len(X_pending), dtype=bool))
+        return GaussianProcessPosterior(processes=tuple(believed), may_be_best=may_be_best)
 
     def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
         """Draw the noise-free objectives at all observed and pending points by quasi-Monte Carlo, jointly [1]_.
@@ -196,7 +205,8 @@ class GaussianProcessPosterior:
             weights = solve_lower(L, solve_lower(L, draws - p.mean), transposed=True)
             values.append(p.output.offset + p.output.scale * draws.T)
             fields.append(p.field_given(base, L, weights))
-        return Fantasies(values=np.stack(values, axis=2), field=lambda X: combine(fields, X))
+        may_be_best = np.append(self.may_be_best, np.ones(len(X_pending), dtype=bool))
+        return Fantasies(values=np.stack(values, axis=2)[:, may_be_best], field=lambda X: combine(fields, X))
 
     def sample_path(self, rng: Rng, features: int) -> Field:
         """Draw one function: random Fourier features for the prior, corrected by the data (pathwise) [1]_.

@@ -79,6 +79,7 @@ def test_the_feasibility_has_a_line_and_a_part_in_the_method() -> None:
     text = page(feasible_output={"name": "fits", "true_value": "1", "false_value": "0"})
     assert "feasibility fits: 1 or 0\n" in text
     assert "acquisition weighted by the probability of being feasible" in text
+    assert "objective values of infeasible evaluations inform the model" in text
     assert "not in the acquisition (feasibility_weighting is none)" in page(
         acquisition={"feasibility_weighting": "none"}
     )

@@ -20,6 +20,7 @@ Z = RNG.random((7, 2))
 Y = np.column_stack([np.sin(5 * X[:, 0]) + X[:, 1], 100 * (X[:, 1] - 0.3) ** 2 + 40])
 Y = Y + np.array([0.05, 1.0]) * RNG.standard_normal(Y.shape)
 ORDERED = np.ones(2, dtype=bool)
+ALL = np.ones(len(X), dtype=bool)
 
 
 def fit(X: np.ndarray, Y: np.ndarray, **options: bool) -> GaussianProcessPosterior:
@@ -35,7 +36,7 @@ def test_predictions_equal_scikit_learns_at_equal_hyperparameters() -> None:
     kernel = ConstantKernel(1.3) * Matern(h.lengthscales, nu=2.5) + WhiteKernel(0.02)
     oracle = GaussianProcessRegressor(kernel, alpha=0, optimizer=None).fit(X, output.values - process.mean)
     mean, std = oracle.predict(Z, return_std=True)
-    prediction = GaussianProcessPosterior(processes=(process,)).predict(Z)
+    prediction = GaussianProcessPosterior(processes=(process,), may_be_best=ALL).predict(Z)
     assert prediction.mean[:, 0] == pytest.approx(output.offset + output.scale * (mean + process.mean), rel=1e-8)
     noise_free = np.sqrt(std**2 - 0.02)
     assert prediction.std[:, 0] == pytest.approx(output.scale * noise_free, rel=1e-6)
@@ -149,7 +150,7 @@ def test_a_covariance_that_cannot_be_factorized_leaves_the_mean_of_the_data(monk
         monkeypatch.setattr(f"hypermap_lite.surrogates.{module}.safe_cholesky", lambda *arguments: None)
     h = Hyperparameters(np.array([0.4, 0.9]), 1.3, 0.02)
     process = Process.condition(X, Standardized.of(Y[:, 0]), h, ORDERED)
-    posterior = GaussianProcessPosterior(processes=(process,))
+    posterior = GaussianProcessPosterior(processes=(process,), may_be_best=ALL)
     assert posterior.predict(Z).mean[:, 0] == pytest.approx(np.full(7, Y[:, 0].mean()), abs=1e-3)
     assert posterior.predict(Z).std[:, 0] == pytest.approx(np.full(7, np.sqrt(1.3) * Y[:, 0].std()), rel=1e-3)
     assert np.isfinite(posterior.fantasies(Z[:1], 4, np.random.default_rng(0)).field(Z).mean).all()
