@@ -171,7 +171,8 @@ class Surrogate(Protocol):
             Variance of the noise in each row of `Y`, in its units squared, shape (n, m), as far as it is known from
             replicates; None where it must be learned. A surrogate may ignore it.
         n_beside
-            How many of the last rows only inform: they cannot be on the front, being infeasible.
+            How many of the last rows only inform: they cannot be on the front, being infeasible, and what they report
+            may be off by an unknown constant and more. A surrogate whose `learn_infeasible` is false gets none.
         """
         ...
 

@@ -35,6 +35,13 @@ FANTASY_JITTER = 1e-8
 """Jitter of the noise-free covariance of fantasies, relative to the output variance."""
 
 
+SHARED_ERROR = 1.0
+"""Variance, in units of the standardized outputs, of the constant by which what is reported beside may be off."""
+
+OWN_ERRORS = (0.0, 0.01, 0.1, 1.0, 1e6)
+"""Variances of what each such output may be off by besides."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaussianProcess:
     """Independent Gaussian processes with a Matern-5/2 kernel, one lengthscale per axis, and a constant mean."""
@@ -107,7 +114,6 @@ class GaussianProcess:
         n_beside: int = 0,
     ) -> Posterior:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
-        outputs = [Standardized.of(column) for column in Y.T]
         prior = HyperPrior.over(
             is_ordered if self.categorical_prior else np.ones_like(is_ordered),
             permutations,
@@ -119,17 +125,38 @@ class GaussianProcess:
         )
         if noise_variance is not None and self.noise:
             prior = prior.of_known_noise()
-        processes = []
-        for k, output in enumerate(outputs):
+        n, processes = len(X) - n_beside, []
+        for k, y in enumerate(Y.T):
+            output = Standardized.of(y[:n])
             known = None if noise_variance is None or not self.noise else output.noise(noise_variance[:, k])
-            likelihood = MarginalLikelihood(X, output.values, is_ordered, prior, permutations, known)
+            likelihood = MarginalLikelihood(
+                X[:n], output.values, is_ordered, prior, permutations, None if known is None else known[:n]
+            )
             starts = [] if start is None else [start[k]]
             if start is None or anew or self.restart:
                 starts.append(prior.mode())
             best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
-            processes.append(Process.condition(X, output, best, is_ordered, permutations, known))
-        may_be_best = np.arange(len(X)) < len(X) - n_beside
-        return GaussianProcessPosterior(processes=tuple(processes), may_be_best=may_be_best)
+            if n_beside:
+                output = output.also(y[n:])
+                whole = replace(likelihood, X=X, y=output.values, known_noise=known)
+                likelihood = with_likely_errors(whole, best, n_beside)
+                best = fit_hyperparameters(likelihood, [best], is_exact=self.restart)
+            processes.append(Process.condition(X, output, best, is_ordered, permutations, known, likelihood.errors))
+        return GaussianProcessPosterior(processes=tuple(processes), may_be_best=np.arange(len(X)) < n)
+
+
+def with_likely_errors(likelihood: MarginalLikelihood, h: Hyperparameters, n_beside: int) -> MarginalLikelihood:
+    """Return a likelihood with the errors of its last rows that are likely by given hyperparameters.
+
+    What is reported beside the evaluations that count need not be the objective. It may be off by a constant, such as a
+    penalty, which is unknown a priori, and by something of its own at each point, of which the most likely one of
+    `OWN_ERRORS` is taken; the largest makes the rows say nothing.
+    """
+    n, theta = len(likelihood.y), h.to_log()
+    is_beside = (np.arange(n) >= n - n_beside).astype(float)
+    shared = SHARED_ERROR * np.outer(is_beside, is_beside)
+    options = [replace(likelihood, errors=shared + own * np.diag(is_beside)) for own in OWN_ERRORS]
+    return min(options, key=lambda option: option(theta)[0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,11 +200,13 @@ class GaussianProcessPosterior:
             values = np.concatenate([p.output.values, p.joint(X_pending)[0]])
             X = np.vstack([p.X, X_pending])
             output = replace(p.output, values=values)
-            kernel, known = p.kernel, p.known_noise
+            kernel, known, errors = p.kernel, p.known_noise, p.errors
             if known is not None:
                 known = np.append(known, np.full(len(X_pending), np.median(known)))
+            if errors is not None:
+                errors = np.pad(errors, (0, len(X_pending)))
             believed.append(
-                Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations, known)
+                Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations, known, errors)
             )
         may_be_best = np.append(self.may_be_best, np.ones(len(X_pending), dtype=bool))
         return GaussianProcessPosterior(processes=tuple(believed), may_be_best=may_be_best)

@@ -188,6 +188,9 @@ class MarginalLikelihood:
     """Noise variance of each output, in units of the standardized outputs, shape (n,); then the hyperparameter
     ``noise_variance`` is a factor of it. None: that is the noise variance itself, the same for all."""
 
+    errors: FloatArray | None = None
+    """Covariance of what else the outputs may be off by, in the same units squared, shape (n, n)."""
+
     def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the value and its gradient by the log hyperparameters, shape (d + 2,).
 
@@ -199,6 +202,8 @@ class MarginalLikelihood:
         C, H = kernel.parts(self.X, self.X)
         K = h.output_variance * C
         K.flat[:: len(K) + 1] += h.noise_variance if self.known_noise is None else h.noise_variance * self.known_noise
+        if self.errors is not None:
+            K += self.errors
         L = safe_cholesky(K)
         if L is None:
             return REJECTED, np.zeros_like(theta)

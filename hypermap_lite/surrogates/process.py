@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -52,6 +52,10 @@ class Standardized:
             return cls(np.zeros(len(y)), offset * magnitude, 1.0)
         return cls((small - offset) / spread, offset * magnitude, spread * magnitude)
 
+    def also(self, y: FloatArray) -> Standardized:
+        """Return these outputs followed by others, in the same units."""
+        return replace(self, values=np.append(self.values, (y - self.offset) / self.scale))
+
     def noise(self, variance: FloatArray) -> FloatArray:
         """Return noise variances, shape (n,), in units of the standardized outputs, none below `SMALLEST_KNOWN`."""
         with np.errstate(over="ignore"):
@@ -76,6 +80,9 @@ class Process:
     known_noise: FloatArray | None = None
     """As in `MarginalLikelihood`."""
 
+    errors: FloatArray | None = None
+    """As in `MarginalLikelihood`."""
+
     @property
     def noise_variances(self) -> FloatArray:
         """Noise variance of each output, shape (n,)."""
@@ -91,6 +98,7 @@ class Process:
         is_ordered: BoolArray,
         permutations: Permutations = NO_PERMUTATIONS,
         known_noise: FloatArray | None = None,
+        errors: FloatArray | None = None,
     ) -> Process:
         """Condition a process with known hyperparameters on the data.
 
@@ -100,13 +108,15 @@ class Process:
         kernel = MaternHammingKernel(h.lengthscales, is_ordered, permutations)
         K = h.output_variance * kernel(X, X)
         K.flat[:: len(X) + 1] += h.noise_variance if known_noise is None else h.noise_variance * known_noise
+        if errors is not None:
+            K += errors
         L = safe_cholesky(K)
         if L is None:
             L = np.eye(len(X)) * 1e6
         mean = constant_mean(inverse_from_cholesky(L), output.values)
         residual = output.values - mean
         alpha = solve_lower(L, solve_lower(L, residual), transposed=True)
-        return cls(X, output, h, kernel, mean, L, alpha, known_noise)
+        return cls(X, output, h, kernel, mean, L, alpha, known_noise, errors)
 
     def field_given(self, base: FloatArray, L: FloatArray, weights: FloatArray) -> ProcessField:
         """Return predictions mean + k(x, base) weights, with the variance left by the factor L."""

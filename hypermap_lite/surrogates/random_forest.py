@@ -59,12 +59,12 @@ class RandomForest:
     """Whether a split lies anywhere between the two evaluations it separates, instead of halfway: trees then differ
     where there are no evaluations [1]_."""
 
-    learn_infeasible: bool = True
-    """Whether it is grown on the objective values of infeasible evaluations, too."""
-
     warm_start_growth: ClassVar[float | None] = None
     noise_from_replicates: ClassVar[bool] = False
     """Never: rows that repeat a configuration are rows of their own, and all rows weigh the same."""
+
+    learn_infeasible: ClassVar[bool] = False
+    """Never: it cannot tell what infeasible evaluations report from what they should."""
 
     def __post_init__(self) -> None:
         if self.number_of_trees < 2:
@@ -89,13 +89,10 @@ class RandomForest:
         noise_variance: FloatArray | None = None,
         n_beside: int = 0,
     ) -> Posterior:
-        """Fit one forest per objective; see `Surrogate.fit`. The noise variance has no part in it."""
+        """Fit one forest per objective; see `Surrogate.fit`. Noise variance and `n_beside` have no part in it."""
         seed = int(rng.integers(2**31))
         forests = self.grow(X, Y, seed, permutations)
-        may_be_best = np.arange(len(X)) < len(X) - n_beside
-        return ForestPosterior(
-            options=self, X=X, Y=Y, may_be_best=may_be_best, seed=seed, forests=forests, permutations=permutations
-        )
+        return ForestPosterior(options=self, X=X, Y=Y, seed=seed, forests=forests, permutations=permutations)
 
     def grow(
         self, X: FloatArray, Y: FloatArray, seed: int, permutations: Permutations = NO_PERMUTATIONS
@@ -200,10 +197,6 @@ class ForestPosterior:
     options: RandomForest
     X: FloatArray
     Y: FloatArray
-
-    may_be_best: BoolArray
-    """Which of the evaluations may be on the front, shape (n,); the others only inform."""
-
     seed: int
     forests: tuple[Forest, ...]
     permutations: Permutations = field(default_factory=dict)
@@ -252,18 +245,12 @@ class ForestPosterior:
         if not len(X_pending):
             return self
         X, Y = np.vstack([self.X, X_pending]), np.vstack([self.Y, self.predict(X_pending).mean])
-        return replace(
-            self,
-            X=X,
-            Y=Y,
-            may_be_best=np.append(self.may_be_best, np.ones(len(X_pending), dtype=bool)),
-            forests=self.options.grow(X, Y, self.seed, self.permutations),
-        )
+        return replace(self, X=X, Y=Y, forests=self.options.grow(X, Y, self.seed, self.permutations))
 
     def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
         """Take every tree as a draw (so there are as many as trees, whatever n); pending points by `believe`."""
         believed = self.believe(X_pending)
-        values = believed._per_tree(believed.X[believed.may_be_best])[0]  # (T, b, m)
+        values = believed._per_tree(believed.X)[0]  # (T, b, m)
 
         def field(X: FloatArray) -> Conditional:
             mean, std = believed._per_tree(X)

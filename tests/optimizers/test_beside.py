@@ -13,7 +13,6 @@ from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.optimizers import Optimizer
 from hypermap_lite.optimizers.beside import FAR, telling
 from hypermap_lite.scenario.loader import load_scenario
-from hypermap_lite.surrogates import SURROGATES
 from tests.optimizers.runs import configurations, resumed, scenario_of, two_objectives
 
 Values = dict[str, float]
@@ -82,25 +81,19 @@ def judged(suggestion: Suggestion, answer: Callable[[Values], Values] = dict) ->
     return Evaluation(suggestion=suggestion, state=State.INFEASIBLE, values=answer(values))
 
 
-@pytest.mark.parametrize("surrogate", list(SURROGATES))
-def test_model_knows_what_lies_beyond_the_edge(surrogate: str) -> None:
+def test_model_knows_what_lies_beyond_the_edge() -> None:
     errors = []
     for learns in (True, False):
-        optimizer = constrained(
-            11, surrogate={"type": surrogate, "learn_infeasible": learns}, budget={"evaluations": 20}
-        )
+        optimizer = constrained(11, surrogate={"learn_infeasible": learns}, budget={"evaluations": 20})
         beyond = np.array([[a, 0.5] for a in np.linspace(0.05, EDGE, 6)])
         truth = [two_objectives(c)["near"] for c in optimizer.history.space.decode(beyond)]
         errors.append(np.abs(optimizer.posterior().predict(beyond).mean[:, 0] - truth).mean())
     assert errors[0] < 0.7 * errors[1]
 
 
-@pytest.mark.parametrize("surrogate", list(SURROGATES))
-def test_infeasible_evaluations_are_on_no_front(surrogate: str) -> None:
+def test_infeasible_evaluations_are_on_no_front() -> None:
     """Their values tell of the objectives; a draw of them would be a front that nobody can have."""
-    optimizer = constrained(
-        12, lambda values: {"near": values["near"] - 1, "far": values["far"] + 1}, surrogate=surrogate
-    )
+    optimizer = constrained(12, lambda values: {"near": values["near"] - 1, "far": values["far"] + 1})
     n = len(optimizer.history.completed)
     assert 2 <= n < 12
     assert len(telling(list(optimizer.history), optimizer.history.objectives)) > 0

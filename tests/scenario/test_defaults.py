@@ -34,7 +34,6 @@ def test_options_of_the_chosen_type_are_filled_and_of_no_other() -> None:
         "min_samples_split": None,
         "bootstrap": None,
         "random_thresholds": False,
-        "learn_infeasible": True,
     }
 
 
