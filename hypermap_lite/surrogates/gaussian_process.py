@@ -20,6 +20,7 @@ from hypermap_lite.surrogates.base import (
     Prediction,
     as_prediction,
 )
+from hypermap_lite.surrogates.beside import with_likely_errors
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import (
     Hyperparameters,
@@ -33,13 +34,6 @@ from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 FANTASY_JITTER = 1e-8
 """Jitter of the noise-free covariance of fantasies, relative to the output variance."""
-
-
-SHARED_ERROR = 1.0
-"""Variance, in units of the standardized outputs, of the constant by which what is reported beside may be off."""
-
-OWN_ERRORS = (0.0, 0.01, 0.1, 1.0, 1e6)
-"""Variances of what each such output may be off by besides."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,20 +137,6 @@ class GaussianProcess:
                 best = fit_hyperparameters(likelihood, [best], is_exact=self.restart)
             processes.append(Process.condition(X, output, best, is_ordered, permutations, known, likelihood.errors))
         return GaussianProcessPosterior(processes=tuple(processes), may_be_best=np.arange(len(X)) < n)
-
-
-def with_likely_errors(likelihood: MarginalLikelihood, h: Hyperparameters, n_beside: int) -> MarginalLikelihood:
-    """Return a likelihood with the errors of its last rows that are likely by given hyperparameters.
-
-    What is reported beside the evaluations that count need not be the objective. It may be off by a constant, such as a
-    penalty, which is unknown a priori, and by something of its own at each point, of which the most likely one of
-    `OWN_ERRORS` is taken; the largest makes the rows say nothing.
-    """
-    n, theta = len(likelihood.y), h.to_log()
-    is_beside = (np.arange(n) >= n - n_beside).astype(float)
-    shared = SHARED_ERROR * np.outer(is_beside, is_beside)
-    options = [replace(likelihood, errors=shared + own * np.diag(is_beside)) for own in OWN_ERRORS]
-    return min(options, key=lambda option: option(theta)[0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

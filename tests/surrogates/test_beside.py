@@ -1,0 +1,67 @@
+"""What a Gaussian process makes of what is reported beside the evaluations that count."""
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from hypermap_lite.surrogates import GaussianProcess
+from hypermap_lite.surrogates.beside import NONSENSE, SHARED_ERROR, loss_of_nonsense
+
+ORDERED = np.ones(2, dtype=bool)
+EDGE = 0.6
+KNOWN = np.random.default_rng(4).random((16, 2)) * np.array([EDGE, 1])
+BEYOND = np.random.default_rng(5).random((12, 2)) * np.array([1 - EDGE, 1]) + np.array([EDGE, 0])
+
+
+def waves(X: np.ndarray) -> np.ndarray:
+    return np.sin(6 * X[:, :1]) + X[:, 1:] ** 2
+
+
+def error_beyond(reported: np.ndarray | None) -> float:
+    """Return the error beyond what is known, with what is reported there, in standard deviations of the outputs."""
+    Z = np.random.default_rng(6).random((200, 2)) * np.array([1 - EDGE, 1]) + np.array([EDGE, 0])
+    model, options = GaussianProcess(), {"is_ordered": ORDERED, "rng": np.random.default_rng(0)}
+    if reported is None:
+        posterior = model.fit(KNOWN, waves(KNOWN), **options)
+    else:
+        values = np.vstack([waves(KNOWN), reported])
+        posterior = model.fit(np.vstack([KNOWN, BEYOND]), values, **options, n_beside=len(BEYOND))
+    return float(np.abs(posterior.predict(Z).mean - waves(Z)).mean() / waves(KNOWN).std())
+
+
+def test_what_is_reported_beside_is_learned() -> None:
+    assert error_beyond(waves(BEYOND)) < 0.3 * error_beyond(None)
+
+
+@pytest.mark.parametrize("penalty", [-1.5, 1.5])
+def test_a_penalty_beside_is_found_out(penalty: float) -> None:
+    """An unknown constant is told from the objective by what both are near the edge."""
+    assert error_beyond(waves(BEYOND) + penalty) < 0.6 * error_beyond(None)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nonsense_beside_teaches_nothing(seed: int) -> None:
+    nonsense = np.random.default_rng(seed).uniform(-3, 3, (len(BEYOND), 1))
+    assert error_beyond(nonsense) == pytest.approx(error_beyond(None), rel=1e-3)
+
+
+def test_density_of_nonsense_is_that_of_its_covariance() -> None:
+    y = np.random.default_rng(0).normal(1, 2, 7)
+    covariances = [SHARED_ERROR * np.ones((7, 7)) + variance * np.eye(7) for variance in NONSENSE]
+    densities = [multivariate_normal(np.zeros(7), covariance).logpdf(y) for covariance in covariances]
+    assert loss_of_nonsense(y) == pytest.approx(-max(densities))
+
+
+def test_points_beside_leave_the_draws_at_the_others() -> None:
+    posterior = GaussianProcess().fit(
+        np.vstack([KNOWN, BEYOND]),
+        np.vstack([waves(KNOWN), waves(BEYOND) - 5]),
+        is_ordered=ORDERED,
+        rng=np.random.default_rng(0),
+        n_beside=len(BEYOND),
+    )
+    pending = np.array([[0.1, 0.2], [0.5, 0.9]])
+    for known, more in ((posterior, pending), (posterior.believe(pending), pending[:0])):
+        draws = known.fantasies(more, 16, np.random.default_rng(1)).values
+        assert draws.shape == (16, len(KNOWN) + len(pending), 1)
+        assert draws.mean(axis=0)[:16] == pytest.approx(waves(KNOWN), abs=0.1)
