@@ -112,8 +112,7 @@ class Path:
     def draw(cls, process: Process, n_features: int, rng: Rng) -> Path:
         """Draw a function and its noise at the data, and correct it by Matheron's rule."""
         features = Features.draw(process, n_features, rng)
-        noise = rng.standard_normal(len(process.X)) * np.sqrt(process.noise_variances)
-        residual = process.output.values - process.mean - features(process.X)[0] - noise
+        residual = process.output.values - process.mean - features(process.X)[0] - process.draw_noise(rng)
         correction = solve_lower(process.L, solve_lower(process.L, residual), transposed=True)
         return cls(process, features, correction)
 

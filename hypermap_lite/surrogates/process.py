@@ -15,7 +15,7 @@ from hypermap_lite.surrogates.marginal_likelihood import (
     Hyperparameters,
     constant_mean,
 )
-from hypermap_lite.typing import BoolArray, FloatArray
+from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 NEXT_TO_ZERO = 1e-150
 """Outputs below this size are zero: their squares vanish."""
@@ -88,6 +88,14 @@ class Process:
         """Noise variance of each output, shape (n,)."""
         relative = np.ones(len(self.X)) if self.known_noise is None else self.known_noise
         return self.hyperparameters.noise_variance * relative
+
+    def draw_noise(self, rng: Rng) -> FloatArray:
+        """Draw what the outputs are off by, shape (n,): noise, and the errors of those beside."""
+        noise: FloatArray = rng.standard_normal(len(self.X)) * np.sqrt(self.noise_variances)
+        if self.errors is None:
+            return noise
+        variances, directions = np.linalg.eigh(self.errors)
+        return noise + directions @ (np.sqrt(np.maximum(variances, 0.0)) * rng.standard_normal(len(self.X)))
 
     @classmethod
     def condition(

@@ -6,6 +6,9 @@ from scipy.stats import multivariate_normal
 
 from hypermap_lite.surrogates import GaussianProcess
 from hypermap_lite.surrogates.beside import NONSENSE, SHARED_ERROR, loss_of_nonsense
+from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior
+from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters
+from hypermap_lite.surrogates.process import Process, Standardized
 
 ORDERED = np.ones(2, dtype=bool)
 EDGE = 0.6
@@ -65,3 +68,21 @@ def test_points_beside_leave_the_draws_at_the_others() -> None:
         draws = known.fantasies(more, 16, np.random.default_rng(1)).values
         assert draws.shape == (16, len(KNOWN) + len(pending), 1)
         assert draws.mean(axis=0)[:16] == pytest.approx(waves(KNOWN), abs=0.1)
+
+
+def test_drawn_functions_are_as_unsure_as_the_predictions() -> None:
+    """A path that left the shared error out would be sure of what is reported beside."""
+    is_beside = np.array([0.0, 0.0, 1.0, 1.0])
+    process = Process.condition(
+        np.array([[0.1, 0.5], [0.3, 0.5], [0.8, 0.4], [0.9, 0.6]]),
+        Standardized(np.array([0.0, 0.5, 1.0, 1.2]), 0.0, 1.0),
+        Hyperparameters(np.array([0.2, 0.8]), 1.0, 1e-4),
+        ORDERED,
+        errors=SHARED_ERROR * np.outer(is_beside, is_beside),
+    )
+    posterior = GaussianProcessPosterior(processes=(process,), may_be_best=is_beside == 0)
+    Z, rng = process.X[2:], np.random.default_rng(1)
+    draws = np.array([posterior.sample_path(rng, 512)(Z).mean[0, :, 0] for _ in range(500)])
+    prediction = posterior.predict(Z)
+    assert draws.mean(axis=0) == pytest.approx(prediction.mean[:, 0], abs=0.1)
+    assert draws.std(axis=0) == pytest.approx(prediction.std[:, 0], rel=0.15)
