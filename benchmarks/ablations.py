@@ -1,8 +1,8 @@
 """Variants of the default method: what a default is worth.
 
-A variant is a list of changes to the scenario, as `--set` takes them. The first two take bounds of the space like the
-rest of it, and nothing from infeasible evaluations. The others take bounds so, too, and change one default more, so
-each is to be compared with the first.
+A variant is a list of changes to the scenario, as `--set` takes them. The first takes bounds of the space like the rest
+of it, the second learns nothing of the objectives from infeasible evaluations. The others take bounds as the first
+does, and change one default more, so each is to be compared with the first.
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ def steps_of(problem: Problem, seed: int, overrides: Sequence[str] = ()) -> Iter
         if value is not None:
             unit = np.prod(Normalization.of_front(known, reference_point).scale)
             given = hypervolume(np.array(black_box.truths), reference_point) - before
-            near = nearness(ours.optimizer.history.X_all()[-1:], space.is_continuous).sum()
+            near = nearness(ours.optimizer.history.X_all()[-1:], space.is_continuous).max()
             yield Step(float(np.exp(value) * unit / problem.best), given / problem.best, bool(near >= NEAR))
 
 

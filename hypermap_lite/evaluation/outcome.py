@@ -115,7 +115,7 @@ class Evaluation:
     values: Mapping[str, float] = field(default_factory=dict)
     """Mean of each objective over the replicates, as the user directed it; all if completed, any if infeasible.
 
-    Those of an infeasible configuration are records only: nothing is learned from them.
+    Those of an infeasible configuration are in no front; a model may learn from them.
     """
 
     standard_errors: Mapping[str, float] = field(default_factory=dict)

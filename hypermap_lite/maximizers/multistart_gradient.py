@@ -96,8 +96,9 @@ class MultistartGradient:
     def _ascend(self, problem: MaximizationProblem, starts: FloatArray) -> FloatArray:
         """Improve k starts along the axes that gradients lead along, shape (k, d); the best of them to the end."""
         is_free = is_smooth(problem.space, self.smooth_levels)
-        moved = _climb(problem, starts, is_free, self.joint_tolerance or LAST_DIGITS)
-        if self.joint_tolerance and len(moved) > 1:
+        tolerance = self.joint_tolerance if len(starts) > 1 else 0.0
+        moved = _climb(problem, starts, is_free, tolerance or LAST_DIGITS)
+        if tolerance:
             best = [int(problem.score(moved).argmax())]
             moved[best] = _climb(problem, moved[best], is_free, LAST_DIGITS)
         moved = problem.space.snap(back_to_allowed(problem.space, starts, moved))
@@ -106,7 +107,10 @@ class MultistartGradient:
 
 
 def _climb(problem: MaximizationProblem, starts: FloatArray, is_free: BoolArray, tolerance: float) -> FloatArray:
-    """Return where L-BFGS-B leads from k starts, shape (k, d), until a step adds less than a share of their scores."""
+    """Return where L-BFGS-B leads from k starts, shape (k, d), until a step adds too little.
+
+    That is a share of the sum of the scores, or as much itself where the sum is below one in size.
+    """
     from scipy.optimize import minimize  # slow to import, and not needed to check a scenario
 
     def negative(flat: FloatArray) -> tuple[float, FloatArray]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighting
-from hypermap_lite.evaluation.outcome import Suggestion
+from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.history.history import History, objectives_of
 from hypermap_lite.objectives import reference_point_of
 from hypermap_lite.optimizers.beside import telling
@@ -53,7 +53,7 @@ class Models:
         self._feasibility_weighting = feasibility_weighting
         self._seed = seed
         self._warm_starts: dict[int, Any] = {}
-        self._posterior_of: tuple[tuple[int, int], Posterior] | None = None
+        self._posterior_of: tuple[tuple[int, ...], Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
     def observed(self, n: int | None = None) -> tuple[FloatArray, FloatArray]:
@@ -70,25 +70,27 @@ class Models:
     def posterior(self) -> Posterior:
         """Return what is known of the objectives after the completed evaluations, of which there must be one."""
         n = len(self._history)
+        beside = self._beside(n)
         # a row that did not complete changes what is pooled, and what is known beside, but nothing else
         rows = n if self._surrogate.noise_from_replicates else len(self._history.completed)
-        key = (rows, len(self._beside(n)[0]))
+        key = (rows, *(row.suggestion.trial for row in beside))
         if self._posterior_of is None or self._posterior_of[0] != key:
-            self._posterior_of = (key, self._posterior_after(n))
+            self._posterior_of = (key, self._posterior_after(n, beside))
         return self._posterior_of[1]
 
-    def _beside(self, n: int) -> tuple[FloatArray, FloatArray]:
+    def _beside(self, n: int) -> list[Evaluation]:
         """Return what else the surrogate learns from among the first n rows: infeasible evaluations."""
-        history = self._history
-        rows = telling(list(history)[:n], history.objectives) if self._surrogate.learn_infeasible else []
-        return history.space.encode([row.configuration for row in rows]), objectives_of(rows, history.objectives)
+        return telling(list(self._history)[:n], self._history.objectives) if self._surrogate.learn_infeasible else []
 
-    def _posterior_after(self, n: int) -> Posterior:
-        """Return the posterior given the first n rows of the history."""
-        beside = self._beside(n)
-        if self._surrogate.noise_from_replicates:
-            return self._fit_samples(n, beside)
-        return self._fit(*self.observed(n), beside)
+    def _posterior_after(self, n: int, beside: list[Evaluation]) -> Posterior:
+        """Return the posterior given the first n rows of the history, of which some only inform."""
+        X = self._history.space.encode([row.configuration for row in beside])
+        known = X, objectives_of(beside, self._history.objectives)
+        return (
+            self._fit_samples(n, known)
+            if self._surrogate.noise_from_replicates
+            else self._fit(*self.observed(n), known)
+        )
 
     def evidence(self, n: int) -> Evidence | None:
         """Return what was known when the history had n rows; None if next to nothing."""
@@ -98,7 +100,7 @@ class Models:
         n_judged = sum(row.state.is_feasible is not None for row in list(self._history)[:n])
         feasibility = self.feasibility(n=n_judged)
         return Evidence(
-            posterior=self.posterior() if n == len(self._history) else self._posterior_after(n),
+            posterior=self.posterior() if n == len(self._history) else self._posterior_after(n, self._beside(n)),
             X=X,
             X_all=self._history.X_all()[:n],
             reference_point=reference_point_of(self._history.objectives),

@@ -1,51 +1,101 @@
-"""Errors of what is reported beside the evaluations that count, as by infeasible ones."""
+"""Learning from what is reported beside the evaluations that count, as by infeasible ones.
+
+It need not be the objective. It may be off by a constant, such as a penalty, which is unknown a priori, or by something
+of its own at each point, or be nonsense.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, MarginalLikelihood
+from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, MarginalLikelihood, fit_hyperparameters
+from hypermap_lite.surrogates.offsets import Offsets
+from hypermap_lite.surrogates.process import Process, Standardized
 from hypermap_lite.typing import FloatArray
 
-SHARED_ERROR: Final = 1.0
+SHARED: Final = 1.0
 """Variance, in units of the standardized outputs, of the constant by which what is reported beside may be off."""
 
-OWN_ERRORS: Final = (0.0, 0.01, 0.1)
+OWN: Final = (0.0, 0.01, 0.1)
 """Variances of what each such output may be off by besides."""
 
 NONSENSE: Final = (0.3, 1.0, 3.0, 10.0, 30.0)
 """Variances of such outputs if they have nothing to do with the objective."""
 
 SAYS_NOTHING: Final = 1e6
-"""Variance of an error with which an output says nothing."""
+"""Variance of an offset with which an output says nothing."""
 
 
-def with_likely_errors(likelihood: MarginalLikelihood, h: Hyperparameters, n_beside: int) -> MarginalLikelihood:
-    """Return a likelihood with the errors of its last rows that are likely by given hyperparameters.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fitted:
+    """One objective's outputs, and the hyperparameters that are likely by them."""
 
-    What is reported beside the evaluations that count need not be the objective. It may be off by a constant, such as a
-    penalty, which is unknown a priori, and by something of its own at each point, of which the most likely one of
-    `OWN_ERRORS` is taken. If draws that have nothing to do with the objective are as likely, the rows say nothing.
+    output: Standardized
+    likelihood: MarginalLikelihood
+    hyperparameters: Hyperparameters
+
+    def process(self) -> Process:
+        """Return the process given the outputs."""
+        given = self.likelihood
+        return Process.condition(
+            given.X,
+            self.output,
+            self.hyperparameters,
+            given.is_ordered,
+            given.permutations,
+            given.known_noise,
+            given.offsets,
+        )
+
+
+def with_beside(
+    fits: Sequence[Fitted], X: FloatArray, Y: FloatArray, noise_variance: FloatArray | None, *, is_exact: bool
+) -> Sequence[Fitted]:
+    """Return the fits of m objectives with what is reported beside, if it tells something of one of them.
+
+    Parameters
+    ----------
+    fits
+        Of the n evaluations that count.
+    X
+        Points beside, shape (k, d), k >= 1.
+    Y
+        What is reported there, shape (k, m).
+    noise_variance
+        As in `Surrogate.fit`, of these rows; None where it is learned.
+    is_exact
+        As in `fit_hyperparameters`.
     """
-    n, theta = len(likelihood.y), h.to_log()
-    is_beside = (np.arange(n) >= n - n_beside).astype(float)
-    shared = SHARED_ERROR * np.outer(is_beside, is_beside)
-    options = [replace(likelihood, errors=shared + own * np.diag(is_beside)) for own in OWN_ERRORS]
-    losses = [option(theta)[0] for option in options]
-    known = likelihood.known_noise
-    alone = replace(
-        likelihood,
-        X=likelihood.X[:-n_beside],
-        y=likelihood.y[:-n_beside],
-        known_noise=None if known is None else known[:-n_beside],
-    )
-    if min(losses) < alone(theta)[0] + loss_of_nonsense(likelihood.y[-n_beside:]):
-        return options[int(np.argmin(losses))]
-    return replace(likelihood, errors=shared + SAYS_NOTHING * np.diag(is_beside))
+    found = []
+    for k, fit in enumerate(fits):
+        output, likelihood = fit.output.also(Y[:, k]), fit.likelihood
+        known = likelihood.known_noise
+        if known is not None and noise_variance is not None:
+            known = np.append(known, output.noise(noise_variance[:, k]))
+        whole = replace(likelihood, X=np.vstack([likelihood.X, X]), y=output.values, known_noise=known)
+        found.append(_learned(fit, replace(fit, output=output, likelihood=whole), is_exact=is_exact))
+    return [wide for wide, _ in found] if any(tells for _, tells in found) else fits
+
+
+def _learned(alone: Fitted, whole: Fitted, *, is_exact: bool) -> tuple[Fitted, bool]:
+    """Return a fit with the likely offsets of the outputs beside, and whether these say anything.
+
+    Of their own offsets the likeliest variance is taken. They say nothing if nonsense is as likely.
+    """
+    n, h = len(alone.output.values), alone.hyperparameters
+    is_beside = np.arange(len(whole.output.values)) >= n
+    options = [replace(whole.likelihood, offsets=Offsets(is_beside, SHARED, own)) for own in OWN]
+    likely = min(options, key=lambda option: option(h.to_log())[0])
+    fitted = fit_hyperparameters(likely, [h], is_exact=is_exact)
+    if likely(fitted.to_log())[0] < alone.likelihood(h.to_log())[0] + loss_of_nonsense(whole.output.values[n:]):
+        return replace(whole, likelihood=likely, hyperparameters=fitted), True
+    nothing = replace(whole.likelihood, offsets=Offsets(is_beside, 0.0, SAYS_NOTHING))
+    return replace(whole, likelihood=nothing), False
 
 
 def loss_of_nonsense(y: FloatArray) -> float:
@@ -55,7 +105,7 @@ def loss_of_nonsense(y: FloatArray) -> float:
     """
     k = len(y)
     own = np.array(NONSENSE)
-    joint = own + k * SHARED_ERROR  # eigenvalue of the covariance along the constant; the others are own
+    joint = own + k * SHARED  # eigenvalue of the covariance along the constant; the others are own
     along, across = float(y.sum()) ** 2 / k, float(y @ y) - float(y.sum()) ** 2 / k
     losses = along / joint + across / own + np.log(joint) + (k - 1) * np.log(own) + k * math.log(2 * math.pi)
     return float(losses.min()) / 2

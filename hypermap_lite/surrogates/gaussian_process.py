@@ -20,7 +20,7 @@ from hypermap_lite.surrogates.base import (
     Prediction,
     as_prediction,
 )
-from hypermap_lite.surrogates.beside import with_likely_errors
+from hypermap_lite.surrogates.beside import Fitted, with_beside
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import (
     Hyperparameters,
@@ -119,24 +119,22 @@ class GaussianProcess:
         )
         if noise_variance is not None and self.noise:
             prior = prior.of_known_noise()
-        n, processes = len(X) - n_beside, []
-        for k, y in enumerate(Y.T):
-            output = Standardized.of(y[:n])
-            known = None if noise_variance is None or not self.noise else output.noise(noise_variance[:, k])
-            likelihood = MarginalLikelihood(
-                X[:n], output.values, is_ordered, prior, permutations, None if known is None else known[:n]
-            )
+        n = len(X) - n_beside
+        fits: Sequence[Fitted] = []
+        for k, y in enumerate(Y[:n].T):
+            output = Standardized.of(y)
+            known = None if noise_variance is None or not self.noise else output.noise(noise_variance[:n, k])
+            likelihood = MarginalLikelihood(X[:n], output.values, is_ordered, prior, permutations, known)
             starts = [] if start is None else [start[k]]
             if start is None or anew or self.restart:
                 starts.append(prior.mode())
             best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
-            if n_beside:
-                output = output.also(y[n:])
-                whole = replace(likelihood, X=X, y=output.values, known_noise=known)
-                likelihood = with_likely_errors(whole, best, n_beside)
-                best = fit_hyperparameters(likelihood, [best], is_exact=self.restart)
-            processes.append(Process.condition(X, output, best, is_ordered, permutations, known, likelihood.errors))
-        return GaussianProcessPosterior(processes=tuple(processes), may_be_best=np.arange(len(X)) < n)
+            fits = [*fits, Fitted(output=output, likelihood=likelihood, hyperparameters=best)]
+        if n_beside:
+            noise_beside = None if noise_variance is None else noise_variance[n:]
+            fits = with_beside(fits, X[n:], Y[n:], noise_beside, is_exact=self.restart)
+        processes = tuple(fit.process() for fit in fits)
+        return GaussianProcessPosterior(processes=processes, may_be_best=np.arange(len(processes[0].X)) < n)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -180,13 +178,13 @@ class GaussianProcessPosterior:
             values = np.concatenate([p.output.values, p.joint(X_pending)[0]])
             X = np.vstack([p.X, X_pending])
             output = replace(p.output, values=values)
-            kernel, known, errors = p.kernel, p.known_noise, p.errors
+            kernel, known, offsets = p.kernel, p.known_noise, p.offsets
             if known is not None:
                 known = np.append(known, np.full(len(X_pending), np.median(known)))
-            if errors is not None:
-                errors = np.pad(errors, (0, len(X_pending)))
+            if offsets is not None:
+                offsets = offsets.padded(len(X_pending))
             believed.append(
-                Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations, known, errors)
+                Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations, known, offsets)
             )
         may_be_best = np.append(self.may_be_best, np.ones(len(X_pending), dtype=bool))
         return GaussianProcessPosterior(processes=tuple(believed), may_be_best=may_be_best)

@@ -14,6 +14,7 @@ import numpy as np
 from hypermap_lite.surrogates.base import Permutations
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.linear_algebra import inverse_from_cholesky, safe_cholesky
+from hypermap_lite.surrogates.offsets import Offsets
 from hypermap_lite.typing import BoolArray, FloatArray
 
 logger = logging.getLogger(__name__)
@@ -188,8 +189,8 @@ class MarginalLikelihood:
     """Noise variance of each output, in units of the standardized outputs, shape (n,); then the hyperparameter
     ``noise_variance`` is a factor of it. None: that is the noise variance itself, the same for all."""
 
-    errors: FloatArray | None = None
-    """Covariance of what else the outputs may be off by, in the same units squared, shape (n, n)."""
+    offsets: Offsets | None = None
+    """What else the outputs may be off by."""
 
     def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the value and its gradient by the log hyperparameters, shape (d + 2,).
@@ -202,8 +203,8 @@ class MarginalLikelihood:
         C, H = kernel.parts(self.X, self.X)
         K = h.output_variance * C
         K.flat[:: len(K) + 1] += h.noise_variance if self.known_noise is None else h.noise_variance * self.known_noise
-        if self.errors is not None:
-            K += self.errors
+        if self.offsets is not None:
+            K += self.offsets.covariance
         L = safe_cholesky(K)
         if L is None:
             return REJECTED, np.zeros_like(theta)

@@ -15,6 +15,7 @@ from hypermap_lite.surrogates.marginal_likelihood import (
     Hyperparameters,
     constant_mean,
 )
+from hypermap_lite.surrogates.offsets import Offsets
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 NEXT_TO_ZERO = 1e-150
@@ -80,7 +81,7 @@ class Process:
     known_noise: FloatArray | None = None
     """As in `MarginalLikelihood`."""
 
-    errors: FloatArray | None = None
+    offsets: Offsets | None = None
     """As in `MarginalLikelihood`."""
 
     @property
@@ -90,12 +91,9 @@ class Process:
         return self.hyperparameters.noise_variance * relative
 
     def draw_noise(self, rng: Rng) -> FloatArray:
-        """Draw what the outputs are off by, shape (n,): noise, and the errors of those beside."""
+        """Draw what the outputs are off by, shape (n,): noise, and the offsets of those beside."""
         noise: FloatArray = rng.standard_normal(len(self.X)) * np.sqrt(self.noise_variances)
-        if self.errors is None:
-            return noise
-        variances, directions = np.linalg.eigh(self.errors)
-        return noise + directions @ (np.sqrt(np.maximum(variances, 0.0)) * rng.standard_normal(len(self.X)))
+        return noise if self.offsets is None else noise + self.offsets.draw(rng)
 
     @classmethod
     def condition(
@@ -106,7 +104,7 @@ class Process:
         is_ordered: BoolArray,
         permutations: Permutations = NO_PERMUTATIONS,
         known_noise: FloatArray | None = None,
-        errors: FloatArray | None = None,
+        offsets: Offsets | None = None,
     ) -> Process:
         """Condition a process with known hyperparameters on the data.
 
@@ -116,15 +114,15 @@ class Process:
         kernel = MaternHammingKernel(h.lengthscales, is_ordered, permutations)
         K = h.output_variance * kernel(X, X)
         K.flat[:: len(X) + 1] += h.noise_variance if known_noise is None else h.noise_variance * known_noise
-        if errors is not None:
-            K += errors
+        if offsets is not None:
+            K += offsets.covariance
         L = safe_cholesky(K)
         if L is None:
             L = np.eye(len(X)) * 1e6
         mean = constant_mean(inverse_from_cholesky(L), output.values)
         residual = output.values - mean
         alpha = solve_lower(L, solve_lower(L, residual), transposed=True)
-        return cls(X, output, h, kernel, mean, L, alpha, known_noise, errors)
+        return cls(X, output, h, kernel, mean, L, alpha, known_noise, offsets)
 
     def field_given(self, base: FloatArray, L: FloatArray, weights: FloatArray) -> ProcessField:
         """Return predictions mean + k(x, base) weights, with the variance left by the factor L."""

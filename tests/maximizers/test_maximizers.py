@@ -232,16 +232,17 @@ class Valley(Bowl):
         return self(X), np.stack([2 * across * X[:, 0] - 2 * (X[:, 0] - 0.7), -across, 0 * X[:, 2]], axis=1)
 
 
-def test_best_start_alone_climbs_to_the_end() -> None:
+@pytest.mark.parametrize("starts", [1, 4])
+def test_best_start_alone_climbs_to_the_end(starts: int) -> None:
     asked = []
     for tolerance in (0.0, 1e-3):
         valley = Valley(np.zeros(3))
-        maximizer = MAXIMIZERS["multistart_gradient"](candidates=64, joint_tolerance=tolerance)
+        maximizer = MAXIMIZERS["multistart_gradient"](candidates=64, starts=starts, joint_tolerance=tolerance)
         found = maximizer.maximize(problem(REAL, valley))
         assert found is not None
         assert found.score == pytest.approx(1.0, abs=1e-6)
         asked.append(valley.n_asked)
-    assert asked[1] < 0.7 * asked[0]
+    assert asked[1] < 0.7 * asked[0] or starts == 1
 
 
 @pytest.mark.parametrize("tolerance", [-1e-9, 1.0])

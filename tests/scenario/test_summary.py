@@ -80,6 +80,8 @@ def test_the_feasibility_has_a_line_and_a_part_in_the_method() -> None:
     assert "feasibility fits: 1 or 0\n" in text
     assert "acquisition weighted by the probability of being feasible" in text
     assert "objective values of infeasible evaluations inform the model" in text
+    for surrogate in ({"learn_infeasible": False}, "random_forest"):
+        assert "inform the model" not in page(feasible_output={"name": "fits"}, surrogate=surrogate)
     assert "not in the acquisition (feasibility_weighting is none)" in page(
         acquisition={"feasibility_weighting": "none"}
     )

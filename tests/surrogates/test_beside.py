@@ -5,9 +5,10 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from hypermap_lite.surrogates import GaussianProcess
-from hypermap_lite.surrogates.beside import NONSENSE, SHARED_ERROR, loss_of_nonsense
+from hypermap_lite.surrogates.beside import NONSENSE, SHARED, loss_of_nonsense
 from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters
+from hypermap_lite.surrogates.offsets import Offsets
 from hypermap_lite.surrogates.process import Process, Standardized
 
 ORDERED = np.ones(2, dtype=bool)
@@ -50,7 +51,7 @@ def test_nonsense_beside_teaches_nothing(seed: int) -> None:
 
 def test_density_of_nonsense_is_that_of_its_covariance() -> None:
     y = np.random.default_rng(0).normal(1, 2, 7)
-    covariances = [SHARED_ERROR * np.ones((7, 7)) + variance * np.eye(7) for variance in NONSENSE]
+    covariances = [SHARED * np.ones((7, 7)) + variance * np.eye(7) for variance in NONSENSE]
     densities = [multivariate_normal(np.zeros(7), covariance).logpdf(y) for covariance in covariances]
     assert loss_of_nonsense(y) == pytest.approx(-max(densities))
 
@@ -72,15 +73,15 @@ def test_points_beside_leave_the_draws_at_the_others() -> None:
 
 def test_drawn_functions_are_as_unsure_as_the_predictions() -> None:
     """A path that left the shared error out would be sure of what is reported beside."""
-    is_beside = np.array([0.0, 0.0, 1.0, 1.0])
+    is_beside = np.array([False, False, True, True])
     process = Process.condition(
         np.array([[0.1, 0.5], [0.3, 0.5], [0.8, 0.4], [0.9, 0.6]]),
         Standardized(np.array([0.0, 0.5, 1.0, 1.2]), 0.0, 1.0),
         Hyperparameters(np.array([0.2, 0.8]), 1.0, 1e-4),
         ORDERED,
-        errors=SHARED_ERROR * np.outer(is_beside, is_beside),
+        offsets=Offsets(is_beside, SHARED, 0.0),
     )
-    posterior = GaussianProcessPosterior(processes=(process,), may_be_best=is_beside == 0)
+    posterior = GaussianProcessPosterior(processes=(process,), may_be_best=~is_beside)
     Z, rng = process.X[2:], np.random.default_rng(1)
     draws = np.array([posterior.sample_path(rng, 512)(Z).mean[0, :, 0] for _ in range(500)])
     prediction = posterior.predict(Z)
