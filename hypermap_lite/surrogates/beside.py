@@ -1,7 +1,12 @@
 """Learning from what is reported beside the evaluations that count, as by infeasible ones.
 
 It need not be the objective. It may be off by a constant, such as a penalty, which is unknown a priori, or by something
-of its own at each point, or be nonsense.
+of its own at each point, or be nonsense. So there is a discrepancy between what is reported and what is asked for, as
+between a simulator and what it simulates [1]_, here without a smooth part.
+
+References
+----------
+.. [1] Kennedy, O'Hagan. Bayesian Calibration of Computer Models. Journal of the Royal Statistical Society B, 2001.
 """
 
 from __future__ import annotations
