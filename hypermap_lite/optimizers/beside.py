@@ -21,12 +21,15 @@ from hypermap_lite.objectives import Objective
 FAR: Final = 3.0
 """Values farther beyond the feasible ones than so many of their ranges are taken for placeholders."""
 
+MOST: Final = 100
+"""The last so many are learned from; each more makes a process slower, and late ones are where the search is."""
+
 
 def telling(evaluations: Sequence[Evaluation], objectives: Sequence[Objective]) -> list[Evaluation]:
     """Return the infeasible evaluations whose objective values are likely to mean something.
 
     Those with a value of every objective, none of which is farther from the feasible ones than `FAR` of their ranges or
-    is, to the last digit, that of another infeasible configuration.
+    is, to the last digit, that of another infeasible configuration; of these the last `MOST`.
     """
     completed = [e for e in evaluations if e.is_completed]
     infeasible = [e for e in evaluations if e.state is State.INFEASIBLE and all(o.name in e.values for o in objectives)]
@@ -41,4 +44,4 @@ def telling(evaluations: Sequence[Evaluation], objectives: Sequence[Objective]) 
         for k, value in enumerate(row.tolist()):
             seen[k, value].add(key_of(evaluation.configuration))
     is_own = np.array([all(len(seen[k, value]) == 1 for k, value in enumerate(row)) for row in Y.tolist()])
-    return [infeasible[i] for i in np.flatnonzero(is_near & is_own)]
+    return [infeasible[i] for i in np.flatnonzero(is_near & is_own)[-MOST:]]

@@ -11,7 +11,7 @@ import pytest
 from hypermap_lite.assembly import build_history, build_optimizer
 from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.optimizers import Optimizer
-from hypermap_lite.optimizers.beside import FAR, telling
+from hypermap_lite.optimizers.beside import FAR, MOST, telling
 from hypermap_lite.scenario.loader import load_scenario
 from tests.optimizers.runs import configurations, resumed, scenario_of, two_objectives
 
@@ -57,6 +57,11 @@ def test_a_value_that_infeasible_configurations_share_is_a_placeholder() -> None
 
 def test_a_repeated_configuration_may_repeat_its_values() -> None:
     assert kept(row(2, {"near": 0.2, "far": 12.0}, a=0.5), row(3, {"near": 0.2, "far": 12.0}, a=0.5)) == [2, 3]
+
+
+def test_the_last_ones_are_kept_of_many() -> None:
+    rows = [row(k, {"near": 0.5 + k / 1e4, "far": 20 + k / 1e3}) for k in range(2, 2 + MOST + 30)]
+    assert kept(*rows) == [*range(32, 2 + MOST + 30)]
 
 
 def test_failures_teach_nothing_and_without_feasible_ones_nothing_is_near() -> None:
