@@ -21,7 +21,7 @@ EDGE = 0.6
 
 
 def row(trial: int, values: Values, *, state: State = State.INFEASIBLE, a: float | None = None) -> Evaluation:
-    configuration = {"a": trial / 100 if a is None else a, "b": 0.0}
+    configuration = {"a": trial / 1000 if a is None else a, "b": 0.0}
     return Evaluation(
         suggestion=Suggestion(trial=trial, configuration=configuration, phase="model"), state=state, values=values
     )
