@@ -55,7 +55,7 @@ TABLES: Mapping[str, Table] = {
     ),
     "skills": Table(title="Skills: a plateau of failure, and the emulated robot tasks", problems=tuple(SKILLS)),
     "ablation": Table(
-        title="The default method, and with bounds like the rest and one default changed",
+        title="The default method and its variants",
         problems=(
             *("branin", "hartmann6_noisy", "func2c", "branin_currin_noisy", "dtlz2", "chankong_haimes", "plateau"),
             *EMULATED,

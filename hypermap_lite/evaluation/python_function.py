@@ -142,9 +142,10 @@ def import_function(name: str, search_path: Sequence[str] = ()) -> Callable[...,
             found: Any = importlib.import_module(module_name)
     except (Exception, SystemExit) as error:
         places = ", ".join(search_path) or "Python's module path"
-        raise ScenarioError(
-            PATH, f"importing '{module_name}' failed: {last_line(error)}", hint=f"It was looked for in {places}."
-        ) from error
+        hint = f"It was looked for in {places}."
+        if module_name.endswith(".py"):
+            hint = f"A module is named without .py: '{module_name.removesuffix('.py')}:{attribute}'."
+        raise ScenarioError(PATH, f"importing '{module_name}' failed: {last_line(error)}", hint=hint) from error
     for part in attribute.split("."):
         if not hasattr(found, part):
             raise ScenarioError(PATH, f"'{module_name}' has no '{attribute}'", hint=nearest(part, _functions_in(found)))

@@ -40,7 +40,7 @@ class Models:
     surrogate
         Of the objectives.
     feasibility_weighting
-        None leaves infeasible evaluations out.
+        None learns nothing of the feasibility.
     seed
         Of the scenario.
     """

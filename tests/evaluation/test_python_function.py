@@ -79,6 +79,11 @@ BOXES = "tests.evaluation.black_boxes"
             "  hint: It was looked for in ",
             id="no such module",
         ),
+        pytest.param(
+            "no_such_box.py:move",
+            "\n  hint: A module is named without .py: 'no_such_box:move'.",
+            id="a file's name",
+        ),
         pytest.param(f"{BOXES}:spere", f"'{BOXES}' has no 'spere'\n  hint: Did you mean 'sphere'", id="misspelt"),
         pytest.param(f"{BOXES}:NOT_CALLABLE", "is int, not a function", id="not callable"),
     ],
