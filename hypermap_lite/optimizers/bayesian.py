@@ -28,7 +28,7 @@ from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.models import MIN_COMPLETED, Models
-from hypermap_lite.optimizers.stagnation import NEXT_TO_NOTHING, draws_at_end, stands_still
+from hypermap_lite.optimizers.stagnation import NEXT_TO_NOTHING, draws_at_end, is_in_the_dark, stands_still
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.pareto.hypervolume import infer_reference_point
@@ -173,15 +173,25 @@ class BayesianOptimizer(Optimizer):
         if found is None:
             return None
         promise, suggestion = found
-        if guidance.weight or not self._leads_nowhere(promise):
+        if guidance.weight or not self._leads_nowhere(promise, context):
             return suggestion
         return self._drawn_anywhere(trial, guidance) or suggestion
 
-    def _leads_nowhere(self, promise: float) -> bool:
-        """Tell whether it is time for a draw: the model has been of no use, and promises none."""
-        if draws_at_end(self._suggestions()) >= self._method.escapes or not stands_still(self.history):
+    def _leads_nowhere(self, promise: float, context: AcquisitionContext) -> bool:
+        """Tell whether it is time for a draw: the model has been of no use, and promises none or knows nothing."""
+        if draws_at_end(self._suggestions()) >= self._method.escapes:
             return False
-        return len(self.history.objectives) == 1 or promise < NEXT_TO_NOTHING
+        if self._has_promises() and is_in_the_dark(self.history, context.posterior):
+            return True
+        return stands_still(self.history) and (len(self.history.objectives) == 1 or promise < NEXT_TO_NOTHING)
+
+    def _has_promises(self) -> bool:
+        """Tell whether acquisition values promise an improvement of an objective or of the hypervolume.
+
+        Those for a drawn trade-off promise nothing that could be found again in the history.
+        """
+        acquisition, m = self._method.acquisition, len(self.history.objectives)
+        return acquisition.is_logarithmic and (m == 1 or (m <= MAX_CLOSED_FORM and not acquisition.is_scalarizing))
 
     def _by_trade_off(
         self, context: AcquisitionContext, trial: int, feasibility: FeasibilityPosterior | None, guidance: Guidance
@@ -247,14 +257,9 @@ class BayesianOptimizer(Optimizer):
         return scorer if feasibility is None or by_feasibility is None else by_feasibility.weigh(scorer, feasibility)
 
     def _less_on_bounds(self, scorer: Scorer, context: AcquisitionContext) -> Scorer:
-        """Return the scorer with a discount on the bounds of the space, if what it promised there did not come true.
-
-        That is known of improvements of an objective or of the hypervolume, not of a drawn trade-off.
-        """
-        acquisition, axes, m = self._method.acquisition, self.history.space.is_continuous, len(self.history.objectives)
-        is_promise = m == 1 or (m <= MAX_CLOSED_FORM and not acquisition.is_scalarizing)
-        least = self._method.boundary_factor
-        if least >= 1 or not acquisition.is_logarithmic or not is_promise or axes.sum() < FEWEST_CHECKED:
+        """Return the scorer with a discount on the bounds of the space, if what it promised there did not come true."""
+        axes, least = self.history.space.is_continuous, self._method.boundary_factor
+        if least >= 1 or not self._has_promises() or axes.sum() < FEWEST_CHECKED:
             return scorer
         mean = context.posterior.predict(self.history.X()).mean
         factor = boundary_factor(self.history, mean, least)

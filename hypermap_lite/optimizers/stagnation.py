@@ -10,9 +10,17 @@ import numpy as np
 
 from hypermap_lite.evaluation.outcome import CONFIRM, MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
+from hypermap_lite.optimizers.promises import are_kept, promises_of
+from hypermap_lite.surrogates.base import Posterior
 
 PATIENCE: Final = 4
 """So many suggestions of the model in a row add nothing to the front where a search stands still."""
+
+PATIENCE_IN_THE_DARK: Final = 6
+"""So many promises in a row are broken where a model that knows nothing of an objective leads nowhere."""
+
+PATIENCE_WITH_ONE: Final = 8
+"""The same with one objective, for most steps towards a minimum overshoot."""
 
 NEXT_TO_NOTHING: Final = math.log(1e-4)
 """Log acquisition, in normalized objectives, below which a point promises nothing."""
@@ -35,6 +43,21 @@ def stands_still(history: History) -> bool:
         n += evaluation.is_completed
     added = [is_completed and not (Y[:k] <= Y[k]).all(axis=1).any() for k, is_completed in chosen[-PATIENCE:]]
     return len(added) == PATIENCE and not any(added)
+
+
+def is_in_the_dark(history: History, posterior: Posterior) -> bool:
+    """Tell whether there is an objective of which the model knows no more than the mean, and its promises are broken.
+
+    So it is on a plateau with noise: what is learnt of it is that the noise is large and that something may be
+    anywhere. A model that knows little but finds something is left alone, and so is one that knows everything of an
+    objective for which nothing is left to find.
+    """
+    patience = PATIENCE_IN_THE_DARK if len(history.objectives) > 1 else PATIENCE_WITH_ONE
+    promises = promises_of(history)[-patience:]
+    explained = posterior.explained() if len(promises) == patience else None
+    if explained is None or (explained > 0).all():
+        return False
+    return not any(are_kept(promises, history, posterior.predict(history.X()).mean))
 
 
 def draws_at_end(suggestions: Iterable[Suggestion]) -> int:

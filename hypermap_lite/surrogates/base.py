@@ -94,6 +94,13 @@ class Posterior(Protocol):
         """Whether its fields carry gradients."""
         ...
 
+    def explained(self) -> FloatArray | None:
+        """Return which share of each objective's variance predictions explain that leave each evaluation out.
+
+        Shape (m,), at most 1; with 0 or less nothing is known of an objective but its mean. None if that is not known.
+        """
+        ...
+
     def predict(self, X: FloatArray) -> Prediction:
         """Predict the noise-free objectives at n points, shape (n, d)."""
         ...

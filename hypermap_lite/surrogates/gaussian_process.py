@@ -156,6 +156,10 @@ class GaussianProcessPosterior:
         """True: all fields carry gradients."""
         return True
 
+    def explained(self) -> FloatArray:
+        """Return which share of each objective's variance is explained by the others' evaluations, shape (m,)."""
+        return np.array([process.explained(self.may_be_best) for process in self.processes])
+
     def predict(self, X: FloatArray) -> Prediction:
         """Predict the noise-free objectives at n points, shape (n, d)."""
         return as_prediction(self.field(X))

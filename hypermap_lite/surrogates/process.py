@@ -124,6 +124,31 @@ class Process:
         alpha = solve_lower(L, solve_lower(L, residual), transposed=True)
         return cls(X, output, h, kernel, mean, L, alpha, known_noise, offsets)
 
+    def explained(self, counts: BoolArray) -> float:
+        """Return which share of its outputs' variance the process explains if it predicts each from all others.
+
+        In closed form, with the mean unknown and the hyperparameters of all outputs [1]_. At most 1; where it is 0 or
+        less, the mean of the others predicts an output as well. 1 if the outputs are equal.
+
+        Parameters
+        ----------
+        counts
+            Which of the n outputs are to be explained, shape (n,), at least two.
+
+        References
+        ----------
+        .. [1] Dubrule. Cross Validation of Kriging in a Unique Neighborhood. Mathematical Geology, 1983.
+        """
+        inverse = inverse_from_cholesky(self.L)
+        pull = inverse.sum(axis=0)
+        free_of_mean = inverse - np.outer(pull, pull) / pull.sum()
+        y, n = self.output.values[counts], int(counts.sum())
+        by_mean = (y - y.mean()) * n / (n - 1)
+        if not by_mean.any():
+            return 1.0
+        by_process = (free_of_mean @ self.output.values)[counts] / np.diag(free_of_mean)[counts]
+        return float(1.0 - (by_process @ by_process) / (by_mean @ by_mean))
+
     def field_given(self, base: FloatArray, L: FloatArray, weights: FloatArray) -> ProcessField:
         """Return predictions mean + k(x, base) weights, with the variance left by the factor L."""
         return ProcessField(self, base, L, weights)

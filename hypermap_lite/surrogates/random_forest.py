@@ -211,6 +211,10 @@ class ForestPosterior:
         """False: a forest is piecewise constant."""
         return False
 
+    def explained(self) -> None:
+        """None: that would take as many forests as there are evaluations."""
+        return
+
     @property
     def _offset(self) -> FloatArray:
         return np.array([forest.offset for forest in self.forests])

@@ -1,5 +1,6 @@
 """A search that stands still, and the draws that lead it off a plateau."""
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -10,20 +11,34 @@ from hypermap_lite.assembly import build_history
 from hypermap_lite.evaluation.outcome import CONFIRM, MODEL, RANDOM, Evaluation, State, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.optimizers import Optimizer, bayesian
-from hypermap_lite.optimizers.stagnation import PATIENCE, draws_at_end, stands_still
+from hypermap_lite.optimizers.stagnation import (
+    PATIENCE,
+    PATIENCE_IN_THE_DARK,
+    PATIENCE_WITH_ONE,
+    draws_at_end,
+    is_in_the_dark,
+    stands_still,
+)
 from hypermap_lite.scenario.loader import load_scenario
+from hypermap_lite.surrogates.base import Prediction
 from hypermap_lite.typing import Configuration
 from tests.optimizers.runs import resumed, run, scenario_of
 
 NAMES = ("near", "far")
 
 
-def history(*rows: tuple[str, tuple[float, ...] | None], objectives: int = 2) -> History:
-    """Return a history of these phases and values, both to be minimized; None for a failure."""
-    scenario = scenario_of(objectives=[{"name": name} for name in NAMES[:objectives]])
+def history(*rows: tuple[str, tuple[float, ...] | None], objectives: int = 2, promise: float = 0.1) -> History:
+    """Return a history of these phases and values, both to be minimized; None for a failure.
+
+    The model promised as much each time.
+    """
+    stated = {"reference_point": 3} if objectives > 1 else {}
+    scenario = scenario_of(objectives=[{"name": name, **stated} for name in NAMES[:objectives]])
     known = build_history(load_scenario(scenario))
     for trial, (phase, values) in enumerate(rows):
-        suggestion = Suggestion(trial=trial, configuration={"a": 0.01 * trial, "b": 0.0}, phase=phase)
+        value = math.log(promise) if phase == MODEL else None
+        configuration = {"a": 0.01 * trial, "b": 0.0}
+        suggestion = Suggestion(trial=trial, configuration=configuration, phase=phase, acquisition_value=value)
         state = State.FAILED if values is None else State.COMPLETED
         named = {} if values is None else dict(zip(NAMES, values, strict=False))
         known.append(Evaluation(suggestion=suggestion, state=state, values=named, error="" if values else "broken"))
@@ -56,6 +71,59 @@ def test_a_search_stands_still_when_the_models_last_suggestions_added_nothing(ro
 @pytest.mark.parametrize(("values", "expected"), [((1.0, 1.0, 1.0), True), ((1.0, 1.0, 0.5), False)])
 def test_one_objective_stands_still_as_long_as_it_has_one_value(values: tuple[float, ...], expected: bool) -> None:
     assert stands_still(history(*[(MODEL, (value,)) for value in values], objectives=1)) is expected
+
+
+class Known:
+    """A posterior of which only what is asked for here is there."""
+
+    def __init__(self, history: History, explained: Any) -> None:
+        self._mean = history.Y()
+        self._explained = explained
+
+    def explained(self) -> Any:
+        return None if self._explained is None else np.array(self._explained)
+
+    def predict(self, X: np.ndarray) -> Prediction:
+        assert len(X) == len(self._mean)
+        return Prediction(mean=self._mean, std=np.zeros_like(self._mean))
+
+
+BETTER = [(MODEL, (0.9 - 0.1 * k, 0.9 - 0.1 * k)) for k in range(PATIENCE_IN_THE_DARK)]
+
+
+@pytest.mark.parametrize(
+    ("rows", "explained", "expected"),
+    [
+        ([USELESS] * PATIENCE_IN_THE_DARK, (0.9, 0.0), True),
+        ([USELESS] * PATIENCE_IN_THE_DARK, (-0.1, 0.9), True),
+        ([USELESS] * PATIENCE_IN_THE_DARK, (0.9, 0.1), False),  # something is known of both
+        ([USELESS] * PATIENCE_IN_THE_DARK, None, False),
+        ([USELESS] * (PATIENCE_IN_THE_DARK - 1), (0.9, 0.0), False),
+        ([(MODEL, None)] * PATIENCE_IN_THE_DARK, (0.9, 0.0), True),
+        (BETTER, (0.9, 0.0), False),
+        ([*BETTER, *[USELESS] * PATIENCE_IN_THE_DARK], (0.9, 0.0), True),
+        ([*[USELESS] * PATIENCE_IN_THE_DARK, BETTER[0]], (0.9, 0.0), False),
+        ([*[USELESS] * PATIENCE_IN_THE_DARK, (RANDOM, (0.0, 0.0))], (0.9, 0.0), True),
+    ],
+)
+def test_a_model_that_knows_nothing_of_an_objective_and_breaks_its_promises_is_in_the_dark(
+    rows: Any, explained: Any, expected: bool
+) -> None:
+    known = history(KNOWN, ("design", (1.1, 0.9)), *rows)
+    assert is_in_the_dark(known, Known(known, explained)) is expected  # type: ignore[arg-type]
+
+
+def test_a_gain_that_is_small_for_the_promise_leaves_it_in_the_dark() -> None:
+    small = [(MODEL, (0.99 - 0.001 * k, 0.9)) for k in range(PATIENCE_IN_THE_DARK)]
+    for promise, expected in ((1e4, True), (1e-6, False)):
+        known = history(KNOWN, ("design", (1.1, 0.9)), *small, promise=promise)
+        assert is_in_the_dark(known, Known(known, (0.9, 0.0))) is expected  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("n", "expected"), [(PATIENCE_WITH_ONE - 1, False), (PATIENCE_WITH_ONE, True)])
+def test_one_objective_is_given_more_time(n: int, expected: bool) -> None:
+    known = history(("design", (1.0,)), ("design", (1.1,)), *[(MODEL, (1.0,))] * n, objectives=1)
+    assert is_in_the_dark(known, Known(known, (0.0,))) is expected  # type: ignore[arg-type]
 
 
 def test_draws_in_a_row_are_counted_from_the_end() -> None:
@@ -94,6 +162,34 @@ def test_draws_lead_off_a_plateau_where_the_model_stays() -> None:
     joined = " ".join(phases(escaped))
     assert f"{MODEL} {RANDOM} {RANDOM} {RANDOM} {MODEL}" in joined
     assert " ".join([RANDOM] * 4) not in joined
+
+
+def noisy(c: Configuration) -> np.ndarray:
+    """Return two standard normal draws, others for each configuration."""
+    return np.random.default_rng(abs(hash((float(c["a"]), float(c["b"]))))).standard_normal(2)
+
+
+def rough_plateau(c: Configuration) -> dict[str, float]:
+    """Return an effort, and a duration that is noise."""
+    noise = noisy(c)
+    return {"near": 0.3 * float(c["a"]) + 0.02 * noise[0], "far": -1 + 0.02 * noise[1]}
+
+
+def rough_slopes(c: Configuration) -> dict[str, float]:
+    """Return two conflicting objectives with as much noise."""
+    a, b = float(c["a"]), float(c["b"]) / 5
+    noise = noisy(c)
+    return {"near": a + b * b + 0.02 * noise[0], "far": 2 * a - b * b - 1 + 0.02 * noise[1]}
+
+
+def test_draws_lead_off_a_plateau_whose_noise_hides_that_it_is_one() -> None:
+    escaped, stuck, sloped = (
+        phases(run(on_the_plateau(escapes), 30, function=function))
+        for escapes, function in ((3, rough_plateau), (0, rough_plateau), (3, rough_slopes))
+    )
+    assert escaped.index(RANDOM) >= 4 + PATIENCE_IN_THE_DARK
+    assert RANDOM not in stuck
+    assert RANDOM not in sloped
 
 
 def as_shown(suggestion: Suggestion) -> Suggestion:

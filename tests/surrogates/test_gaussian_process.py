@@ -263,3 +263,45 @@ def test_surrogate_without_noise_takes_no_notice_of_it() -> None:
     model = GaussianProcess(noise=False)
     with_it = model.fit(X, Y, noise_variance=np.ones(Y.shape), **options).predict(Z)
     assert np.array_equal(with_it.mean, model.fit(X, Y, **options).predict(Z).mean)
+
+
+def left_out(process: Process) -> np.ndarray:
+    """Return what is predicted of each output, in standardized units, from all the others."""
+    n, h, ordered = len(process.X), process.hyperparameters, process.kernel.is_ordered
+    means = []
+    for i in range(n):
+        rest = np.arange(n) != i
+        output = Standardized(process.output.values[rest], 0.0, 1.0)
+        known = None if process.known_noise is None else process.known_noise[rest]
+        means.append(
+            Process.condition(process.X[rest], output, h, ordered, known_noise=known).joint(process.X[i : i + 1])[0][0]
+        )
+    return np.array(means)
+
+
+@pytest.mark.parametrize("known", [None, np.linspace(0.5, 2, len(X))])
+@pytest.mark.parametrize("counts", [ALL, np.arange(len(X)) % 3 > 0])
+def test_share_explained_is_that_of_predictions_without_the_output(
+    known: np.ndarray | None, counts: np.ndarray
+) -> None:
+    h = Hyperparameters(lengthscales=np.array([0.3, 0.7]), output_variance=1.3, noise_variance=0.04)
+    process = Process.condition(X, Standardized.of(Y[:, 0]), h, ORDERED, known_noise=known)
+    y = process.output.values[counts]
+    others = (y.sum() - y) / (len(y) - 1)
+    errors = np.square(y - left_out(process)[counts]).sum(), np.square(y - others).sum()
+    assert process.explained(counts) == pytest.approx(1 - errors[0] / errors[1])
+
+
+def test_what_follows_the_inputs_is_explained_and_noise_is_not() -> None:
+    noise = np.random.default_rng(2).standard_normal(len(X))
+    followed, nothing, same = fit(X, np.column_stack([Y[:, 0], noise, np.ones(len(X))])).explained()
+    assert followed > 0.8
+    assert nothing <= 0
+    assert same == 1
+
+
+def test_nothing_is_explained_if_the_covariance_cannot_be_factorized(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hypermap_lite.surrogates.process.safe_cholesky", lambda K: None)
+    h = Hyperparameters(lengthscales=np.ones(2), output_variance=1.0, noise_variance=0.01)
+    process = Process.condition(X, Standardized.of(Y[:, 0]), h, ORDERED)
+    assert process.explained(ALL) == pytest.approx(0, abs=1e-6)
