@@ -3,8 +3,8 @@
     python benchmarks/reference.py
 
 Copies from `outputs/studies/` to `outputs/reference/`: of each study its tables, and of each variant the run with the
-first seed (scenario, history and front); the figures that the page shows go to `docs/images/`. The studies must be
-finished:
+first seed (scenario, history and front); the figures that the page shows go to `docs/images/`. What was kept of a study
+that is not there now stays. The studies must be finished:
 
     python -m hypermap_lite study example_scenarios/robot/studies/peg_insertion.json
 
@@ -32,8 +32,8 @@ PICTURES = ("hypervolume", "attainment")
 SECONDS_PER_HOUR = 3600.0
 
 
-def keep(name: str) -> list[dict[str, str]]:
-    """Copy what is kept of one study and return the rows of its comparison."""
+def keep(name: str) -> None:
+    """Copy what is kept of one study."""
     source, target = SOURCE / name, TARGET / name
     if target.exists():
         shutil.rmtree(target)
@@ -51,7 +51,11 @@ def keep(name: str) -> list[dict[str, str]]:
         shown = IMAGES / f"study_{name}_{picture}.png"
         if shown.name in page:
             shutil.copyfile(source / f"{picture}.png", shown)
-    with (target / "comparison.csv").open(newline="", encoding="utf-8") as file:
+
+
+def comparison(name: str) -> list[dict[str, str]]:
+    """Return the rows of a kept study's comparison."""
+    with (TARGET / name / "comparison.csv").open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 
@@ -97,9 +101,12 @@ def section(name: str, rows: Sequence[dict[str, str]]) -> list[str]:
 
 
 def main() -> None:
-    """Copy the studies that are there and write the page."""
+    """Copy the studies that are there and write the page of all that are kept."""
     TARGET.mkdir(exist_ok=True)
-    names = [file.stem for file in sorted(STUDIES.glob("*.json")) if (SOURCE / file.stem / "comparison.csv").exists()]
+    names = [file.stem for file in sorted(STUDIES.glob("*.json"))]
+    for name in names:
+        if (SOURCE / name / "comparison.csv").exists():
+            keep(name)
     page = [
         "# Stored results",
         "",
@@ -110,7 +117,8 @@ def main() -> None:
     (TARGET / "versions.json").write_text(json.dumps(versions, indent=2) + "\n", encoding="utf-8")
     page += [f"{machine()} {', '.join(f'{package} {number}' for package, number in versions.items())}.", ""]
     for name in names:
-        page += section(name, keep(name))
+        if (TARGET / name).exists():
+            page += section(name, comparison(name))
     (TARGET / "README.md").write_text("\n".join(page).rstrip() + "\n", encoding="utf-8")
 
 
