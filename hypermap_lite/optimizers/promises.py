@@ -31,7 +31,7 @@ class Promise(NamedTuple):
     """Of the history."""
 
     n_before: int
-    """Evaluations that had completed before it."""
+    """Evaluations that completed before it in the history; some of them may have been under way when it was made."""
 
     is_completed: bool
     value: float

@@ -22,6 +22,9 @@ PATIENCE_IN_THE_DARK: Final = 6
 PATIENCE_WITH_ONE: Final = 8
 """The same with one objective, for most steps towards a minimum overshoot."""
 
+NOTHING: Final = 1e-6
+"""Share of an objective's variance that is as good as none: what rounding leaves of zero."""
+
 NEXT_TO_NOTHING: Final = math.log(1e-4)
 """Log acquisition, in normalized objectives, below which a point promises nothing."""
 
@@ -49,13 +52,17 @@ def is_in_the_dark(history: History, posterior: Posterior) -> bool:
     """Tell whether there is an objective of which the model knows no more than the mean, and its promises are broken.
 
     So it is on a plateau with noise: what is learnt of it is that the noise is large and that something may be
-    anywhere. A model that knows little but finds something is left alone, and so is one that knows everything of an
-    objective for which nothing is left to find.
+    anywhere. A model whose last steps gave what they promised is left alone, however little it knows, and so is one
+    that knows something of each objective. Steps that a prior guides promise nothing that could be broken, so the rule
+    waits until there have been enough without one in a row.
     """
     patience = PATIENCE_IN_THE_DARK if len(history.objectives) > 1 else PATIENCE_WITH_ONE
+    chosen = [row for row, evaluation in enumerate(history) if evaluation.suggestion.phase == MODEL][-patience:]
     promises = promises_of(history)[-patience:]
-    explained = posterior.explained() if len(promises) == patience else None
-    if explained is None or (explained > 0).all():
+    if len(promises) < patience or [promise.row for promise in promises] != chosen:
+        return False
+    explained = posterior.explained()
+    if explained is None or (explained > NOTHING).all():
         return False
     return not any(are_kept(promises, history, posterior.predict(history.X()).mean))
 

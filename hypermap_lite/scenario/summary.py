@@ -152,12 +152,15 @@ def _method(scenario: Scenario) -> list[str]:
         lines += [f"evaluations {n + 1} to {total}: {chosen},", f"  maximized by {_component(scenario.maximizer)}"]
     if epsilon := scenario.optimizer.options.get("epsilon"):
         lines.append(f"  with probability {epsilon:g} drawn uniformly instead")
-    escapes = scenario.optimizer.options.get("escapes")
-    if escapes and (m == 1 or acquisition.function.type not in NO_IMPROVEMENTS):
-        lines.append(f"  where the search stands still, up to {escapes} drawn uniformly between one and the next")
-    factor = scenario.optimizer.options.get("boundary_factor", 1.0)
     is_promise = acquisition.function.type == HYPERVOLUME_IMPROVEMENT and m <= MAX_CLOSED_FORM
     is_promise = is_promise or (m == 1 and acquisition.function.type not in NO_IMPROVEMENTS)
+    escapes = scenario.optimizer.options.get("escapes")
+    if escapes and (m == 1 or acquisition.function.type not in NO_IMPROVEMENTS):
+        lines.append(f"  where the search stands still, up to {escapes} drawn uniformly between one and the next;")
+        if is_promise and scenario.surrogate.type == "gaussian_process":
+            lines.append("  so, too, where promises are broken in a row and nothing is known of an objective")
+        lines[-1] = lines[-1].rstrip(";")
+    factor = scenario.optimizer.options.get("boundary_factor", 1.0)
     if factor < 1 and is_promise and sum(p.parameter_type == "real" for p in scenario.parameters) >= FEWEST_CHECKED:
         lines.append(f"  what is promised on a bound counts {factor:g} of itself while such promises are broken")
     if separation := scenario.optimizer.options.get("separation"):

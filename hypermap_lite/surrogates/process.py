@@ -127,8 +127,9 @@ class Process:
     def explained(self, counts: BoolArray) -> float:
         """Return which share of its outputs' variance the process explains if it predicts each from all others.
 
-        In closed form, with the mean unknown and the hyperparameters of all outputs [1]_. At most 1; where it is 0 or
-        less, the mean of the others predicts an output as well. 1 if the outputs are equal.
+        In closed form, with the mean unknown and the hyperparameters of all outputs [1]_, which have seen the output
+        left out: the share is too large by what they owe to it, the more so the more axes there are. At most 1; where
+        it is 0 or less, the mean of the others predicts an output as well. 1 if the outputs are equal.
 
         Parameters
         ----------

@@ -22,23 +22,26 @@ from hypermap_lite.optimizers.stagnation import (
 from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.surrogates.base import Prediction
 from hypermap_lite.typing import Configuration
-from tests.optimizers.runs import resumed, run, scenario_of
+from tests.optimizers.runs import Function, resumed, run, scenario_of, two_objectives
 
 NAMES = ("near", "far")
+GUIDED = "guided"
 
 
 def history(*rows: tuple[str, tuple[float, ...] | None], objectives: int = 2, promise: float = 0.1) -> History:
     """Return a history of these phases and values, both to be minimized; None for a failure.
 
-    The model promised as much each time.
+    The model promised as much each time; in the phase `GUIDED` a prior had a part in its suggestion.
     """
     stated = {"reference_point": 3} if objectives > 1 else {}
     scenario = scenario_of(objectives=[{"name": name, **stated} for name in NAMES[:objectives]])
     known = build_history(load_scenario(scenario))
     for trial, (phase, values) in enumerate(rows):
-        value = math.log(promise) if phase == MODEL else None
-        configuration = {"a": 0.01 * trial, "b": 0.0}
-        suggestion = Suggestion(trial=trial, configuration=configuration, phase=phase, acquisition_value=value)
+        value = math.log(promise) if phase in (MODEL, GUIDED) else None
+        configuration, weight = {"a": 0.01 * trial, "b": 0.0}, 1.0 if phase == GUIDED else None
+        phase = MODEL if phase == GUIDED else phase
+        about = {"phase": phase, "acquisition_value": value, "prior_weight": weight}
+        suggestion = Suggestion(trial=trial, configuration=configuration, **about)
         state = State.FAILED if values is None else State.COMPLETED
         named = {} if values is None else dict(zip(NAMES, values, strict=False))
         known.append(Evaluation(suggestion=suggestion, state=state, values=named, error="" if values else "broken"))
@@ -104,6 +107,10 @@ BETTER = [(MODEL, (0.9 - 0.1 * k, 0.9 - 0.1 * k)) for k in range(PATIENCE_IN_THE
         ([*BETTER, *[USELESS] * PATIENCE_IN_THE_DARK], (0.9, 0.0), True),
         ([*[USELESS] * PATIENCE_IN_THE_DARK, BETTER[0]], (0.9, 0.0), False),
         ([*[USELESS] * PATIENCE_IN_THE_DARK, (RANDOM, (0.0, 0.0))], (0.9, 0.0), True),
+        ([USELESS] * PATIENCE_IN_THE_DARK, (0.9, 1e-9), True),  # what rounding leaves of zero
+        ([*[USELESS] * PATIENCE_IN_THE_DARK, (GUIDED, (0.0, 0.0))], (0.9, 0.0), False),
+        ([*[USELESS] * 3, (GUIDED, (2.0, 2.0)), *[USELESS] * 3], (0.9, 0.0), False),
+        ([(GUIDED, (0.0, 0.0)), *[USELESS] * PATIENCE_IN_THE_DARK], (0.9, 0.0), True),
     ],
 )
 def test_a_model_that_knows_nothing_of_an_objective_and_breaks_its_promises_is_in_the_dark(
@@ -182,14 +189,42 @@ def rough_slopes(c: Configuration) -> dict[str, float]:
     return {"near": a + b * b + 0.02 * noise[0], "far": 2 * a - b * b - 1 + 0.02 * noise[1]}
 
 
-def test_draws_lead_off_a_plateau_whose_noise_hides_that_it_is_one() -> None:
-    escaped, stuck, sloped = (
-        phases(run(on_the_plateau(escapes), 30, function=function))
-        for escapes, function in ((3, rough_plateau), (0, rough_plateau), (3, rough_slopes))
-    )
-    assert escaped.index(RANDOM) >= 4 + PATIENCE_IN_THE_DARK
-    assert RANDOM not in stuck
-    assert RANDOM not in sloped
+def phases_of(function: Function, seed: int = 0, **changes: Any) -> list[str]:
+    return phases(run(on_the_plateau(3) | {"seed": seed} | changes, 30, function=function))
+
+
+def test_draws_lead_off_a_plateau_whose_noise_hides_that_it_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = [trace for seed in range(5) if RANDOM in (trace := phases_of(rough_plateau, seed))]
+    assert len(drawn) >= 3
+    assert all(trace.index(RANDOM) >= 4 + PATIENCE_IN_THE_DARK for trace in drawn)
+    assert RANDOM not in phases_of(rough_slopes)
+    monkeypatch.setattr(bayesian, "is_in_the_dark", lambda history, posterior: False)
+    assert not any(RANDOM in phases_of(rough_plateau, seed) for seed in range(2))
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({}, True),
+        ({"acquisition": {"type": "expected_improvement"}, "objectives": [{"name": "near"}]}, True),
+        ({"acquisition": {"type": "noisy_expected_improvement", "scalarization": {"type": "tchebyshev"}}}, False),
+        ({"acquisition": {"type": "thompson_sampling"}}, False),
+        ({"acquisition": {"type": "thompson_sampling"}, "objectives": [{"name": "near"}]}, False),
+        ({"objectives": [{"name": name} for name in ("near", "far", "near2", "far2")]}, False),
+    ],
+)
+def test_only_promises_that_are_checked_can_leave_a_model_in_the_dark(
+    changes: Any, expected: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bayesian, "is_in_the_dark", lambda history, posterior: True)
+    monkeypatch.setattr(bayesian, "stands_still", lambda history: False)
+
+    def function(c: Configuration) -> dict[str, float]:
+        values = two_objectives(c)
+        return values | {f"{name}2": -value for name, value in values.items()}
+
+    trace = phases(run(on_the_plateau(3) | changes, 8, function=function))
+    assert (RANDOM in trace) is expected
 
 
 def as_shown(suggestion: Suggestion) -> Suggestion:
@@ -198,9 +233,10 @@ def as_shown(suggestion: Suggestion) -> Suggestion:
 
 
 @pytest.mark.parametrize("stop", [12, 16, 20, 24])
-def test_a_resumed_run_draws_the_same(stop: int) -> None:
+@pytest.mark.parametrize("function", [plateau, rough_plateau], ids=lambda function: function.__name__)
+def test_a_resumed_run_draws_the_same(stop: int, function: Function) -> None:
     scenario = on_the_plateau(3)
-    whole = run(scenario, 28, function=plateau, batch=4)
+    whole = run(scenario, 28, function=function, batch=4)
     expected = [as_shown(e.suggestion) for e in list(whole.history)[stop : stop + 4]]
     assert [as_shown(s) for s in resumed(scenario, list(whole.history)[:stop]).ask(4)] == expected
     assert RANDOM in phases(whole)[12:]

@@ -87,3 +87,21 @@ def test_drawn_functions_are_as_unsure_as_the_predictions() -> None:
     prediction = posterior.predict(Z)
     assert draws.mean(axis=0) == pytest.approx(prediction.mean[:, 0], abs=0.1)
     assert draws.std(axis=0) == pytest.approx(prediction.std[:, 0], rel=0.15)
+
+
+@pytest.mark.parametrize(("shared", "own"), [(SHARED, 0.0), (SHARED, 0.1), (0.0, 1e6)])
+def test_share_explained_is_that_of_predictions_without_each_output_that_counts(shared: float, own: float) -> None:
+    X, n = np.vstack([KNOWN, BEYOND]), len(KNOWN)
+    h = Hyperparameters(lengthscales=np.array([0.4, 0.8]), output_variance=1.2, noise_variance=0.02)
+    values = Standardized.of(waves(KNOWN)[:, 0]).also(waves(BEYOND)[:, 0] + 0.5).values
+    is_beside = np.arange(len(X)) >= n
+
+    def process(rows: np.ndarray) -> Process:
+        output = Standardized(values[rows], 0.0, 1.0)
+        return Process.condition(X[rows], output, h, ORDERED, offsets=Offsets(is_beside[rows], shared, own))
+
+    every = np.arange(len(X))
+    left_out = np.array([process(every[every != i]).joint(X[i : i + 1])[0][0] for i in range(n)])
+    others = (values[:n].sum() - values[:n]) / (n - 1)
+    expected = 1 - np.square(values[:n] - left_out).sum() / np.square(values[:n] - others).sum()
+    assert process(every).explained(~is_beside) == pytest.approx(expected)
