@@ -156,10 +156,9 @@ def _method(scenario: Scenario) -> list[str]:
     is_promise = is_promise or (m == 1 and acquisition.function.type not in NO_IMPROVEMENTS)
     escapes = scenario.optimizer.options.get("escapes")
     if escapes and (m == 1 or acquisition.function.type not in NO_IMPROVEMENTS):
-        lines.append(f"  where the search stands still, up to {escapes} drawn uniformly between one and the next;")
+        lines.append(f"  where the search stands still, up to {escapes} drawn uniformly between one and the next")
         if is_promise and scenario.surrogate.type == "gaussian_process":
-            lines.append("  so, too, where promises are broken in a row and nothing is known of an objective")
-        lines[-1] = lines[-1].rstrip(";")
+            lines.append("  and as many where promises are broken in a row and nothing is known of an objective")
     factor = scenario.optimizer.options.get("boundary_factor", 1.0)
     if factor < 1 and is_promise and sum(p.parameter_type == "real" for p in scenario.parameters) >= FEWEST_CHECKED:
         lines.append(f"  what is promised on a bound counts {factor:g} of itself while such promises are broken")
