@@ -47,6 +47,21 @@ def chankong_haimes_holds(X: FloatArray) -> BoolArray:
     return (a**2 + b**2 <= 225) & (a - 3 * b + 10 <= 0)
 
 
+def tnk_holds(X: FloatArray) -> BoolArray:
+    """Tell whether both constraints of Tanaka et al. hold, as they do in a wavy band that is 5.1 % of the square [1]_.
+
+    The objectives are the coordinates themselves, so the front is a part of the band's edge, in three pieces.
+
+    References
+    ----------
+    .. [1] Tanaka, Watanabe, Furukawa, Tanino. GA-Based Decision Support System for Multicriteria Optimization. IEEE
+       Int. Conf. Systems, Man and Cybernetics, 1995.
+    """
+    a, b = X.T
+    is_outside = a**2 + b**2 >= 1 + 0.1 * np.cos(16 * np.arctan2(a, b))
+    return is_outside & ((a - 0.5) ** 2 + (b - 0.5) ** 2 <= 0.5)
+
+
 CONSTRAINED: Mapping[str, Problem] = {
     "constrained_branin_currin": Problem(
         function=branin_currin,
@@ -68,5 +83,12 @@ CONSTRAINED: Mapping[str, Problem] = {
         parameters=real_parameters([(-20, 20)] * 2),
         reference_point=(260.0, 20.0),
         best=37_865.0,
+    ),
+    "tnk": Problem(
+        function=np.array,
+        is_feasible=tnk_holds,
+        parameters=real_parameters([(0, math.pi)] * 2),
+        reference_point=(1.3, 1.3),
+        best=0.8967,  # of a grid of 26,000 x 26,000 points of the box below the reference point
     ),
 }

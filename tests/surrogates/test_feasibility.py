@@ -76,6 +76,16 @@ def test_first_infeasible_point_among_feasible_ones_is_avoided() -> None:
     assert bad < 0.5 < 0.8 < good
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_a_single_feasible_point_is_the_tip_of_a_region_and_no_matter_of_chance(seed) -> None:
+    middle = np.array([0.3, 0.3])
+    X = np.random.default_rng(seed).random((100, 2))
+    X = np.vstack([middle, X[np.linalg.norm(X - middle, axis=1) > 0.12][:40]])  # of a disc of 4.5 %
+    posterior = ProbitProcess().fit(X, np.arange(41) == 0, is_ordered=ORDERED)
+    p = np.exp(posterior.log_probability(np.array([[0.32, 0.32], [0, 0], [0, 1], [1, 0], [1, 1]])))
+    assert p[0] > 1.2 * p[1:].max()
+
+
 def test_a_category_that_was_always_infeasible_is_avoided() -> None:
     X = np.random.default_rng(3).random((24, 3))
     X[:, 2] = np.arange(24) % 3 / 3
