@@ -1,7 +1,8 @@
 """Variants of the default method: what a default is worth.
 
 A variant is a list of changes to the scenario, as `--set` takes them; each changes one default and leaves the rest.
-`OF_FEASIBILITY` holds those that change nothing without an unknown constraint.
+`OF_FEASIBILITY` holds those that change nothing without an unknown constraint, `OF_TAILS` those that change next to
+nothing without values far beyond the rest.
 """
 
 from __future__ import annotations
@@ -29,3 +30,4 @@ OF_FEASIBILITY: Mapping[str, Sequence[str]] = {
     "infeasible values ignored": ("surrogate.learn_infeasible=false",),
     "feasibility to the first power": ("acquisition.feasibility_weighting.exponent=1",),
 }
+OF_TAILS: Mapping[str, Sequence[str]] = {"tails as they are": ("surrogate.compress_tails=false",)}

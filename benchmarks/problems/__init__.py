@@ -11,9 +11,10 @@ from .emulated import EMULATED
 from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
+from .tails import TAILS
 
-__all__ = ["CONSTRAINED", "EMULATED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "Problem"]
+__all__ = ["CONSTRAINED", "EMULATED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS", "Problem"]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
 
-PROBLEMS: Mapping[str, Problem] = {**SINGLE, **SEVERAL, **CONSTRAINED, **SKILLS}
+PROBLEMS: Mapping[str, Problem] = {**SINGLE, **SEVERAL, **CONSTRAINED, **SKILLS, **TAILS}

@@ -23,6 +23,7 @@ HARTMANN_P = 1e-4 * np.array(
         [4047, 8828, 8732, 5743, 1091, 381],
     ]
 )
+HARTMANN6_MINIMIZER = np.array([0.20168952, 0.15001069, 0.47687398, 0.27533243, 0.31165162, 0.65730054])
 
 
 def branin(X: FloatArray) -> FloatArray:
@@ -74,3 +75,17 @@ def beale(X: FloatArray) -> FloatArray:
     """Return Beale's function; zero at (3, 0.5)."""
     a, b = X[..., 0], X[..., 1]
     return (1.5 - a + a * b) ** 2 + (2.25 - a + a * b**2) ** 2 + (2.625 - a + a * b**3) ** 2
+
+
+def goldstein_price(X: FloatArray) -> FloatArray:
+    """Return Goldstein and Price's function (1971) on [-2, 2]^2, between 3, at (0, -1), and 1e6."""
+    a, b = X[..., 0], X[..., 1]
+    first = 1 + (a + b + 1) ** 2 * (19 - 14 * a + 3 * a**2 - 14 * b + 6 * a * b + 3 * b**2)
+    second = 30 + (2 * a - 3 * b) ** 2 * (18 - 32 * a + 12 * a**2 + 48 * b - 36 * a * b + 27 * b**2)
+    return first * second
+
+
+def zakharov(X: FloatArray) -> FloatArray:
+    """Return Zakharov's function, usually on [-5, 10]^d, between 0, at 0, and 4e6 in four dimensions."""
+    weighted = 0.5 * (np.arange(1, X.shape[-1] + 1) * X).sum(axis=-1)
+    return (X**2).sum(axis=-1) + weighted**2 + weighted**4

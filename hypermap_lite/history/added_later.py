@@ -22,6 +22,7 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.optimizer.boundary_factor": "1",
     "$.optimizer.escapes": "0",
     "$.surrogate.categorical_prior": "false",
+    "$.surrogate.compress_tails": "false",
     "$.surrogate.learn_infeasible": "false",
     "$.surrogate.lengthscale_location": json.dumps(math.sqrt(2.0)),
     "$.surrogate.lengthscale_width": json.dumps(math.sqrt(3.0)),

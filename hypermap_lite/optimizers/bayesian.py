@@ -37,8 +37,10 @@ from hypermap_lite.priors.beliefs import Belief
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization
 from hypermap_lite.space.real import FEWEST_CHECKED
-from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.surrogates.base import Posterior, Predictor
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
+from hypermap_lite.surrogates.reported import AsReported
+from hypermap_lite.surrogates.tails import compress
 from hypermap_lite.typing import FloatArray, Rng
 
 MAX_INCUMBENTS = 8
@@ -101,12 +103,19 @@ class BayesianOptimizer(Optimizer):
         self._guide = Guide(beliefs or (Belief(prior=prior),), method.prior_weighting, history.space, seed)
 
     def posterior(self) -> Posterior:
-        """Return what the surrogate knows after the completed evaluations, of which there must be one."""
+        """Return what the surrogate knows after the completed evaluations, of which there must be one.
+
+        Of objectives whose tails are compressed; see `predictor`.
+        """
         return self.fitted()[0]
+
+    def predictor(self) -> Predictor:
+        """Return what predicts the objectives as they are reported."""
+        return AsReported(posterior=self.posterior(), tails=self._models.tails())
 
     def has_model(self, n: int | None = None) -> bool:
         """Tell whether the first n rows, all by default, are enough for a model: in what the surrogate is fitted to."""
-        return len(self._models.observed(n)[0]) >= MIN_COMPLETED
+        return self._models.n_observed(n) >= MIN_COMPLETED
 
     def fitted(self) -> tuple[Posterior, FloatArray]:
         """Return the `posterior`, and the points it was fitted to, shape (n, d)."""
@@ -181,7 +190,7 @@ class BayesianOptimizer(Optimizer):
         """Tell whether it is time for a draw: the model has been of no use, and promises none or knows nothing."""
         if draws_at_end(self._suggestions()) >= self._method.escapes:
             return False
-        if self._has_promises() and is_in_the_dark(self.history, context.posterior):
+        if self._has_promises() and is_in_the_dark(self.history, self._models.told(), context.posterior):
             return True
         return stands_still(self.history) and (len(self.history.objectives) == 1 or promise < NEXT_TO_NOTHING)
 
@@ -240,7 +249,11 @@ class BayesianOptimizer(Optimizer):
         return suggestion.acquisition_value - by_feasibility.exponent * float(feasibility.log_probability(x)[0])
 
     def _weights(self, normalization: Normalization, rng: Rng) -> FloatArray:
-        return self._method.weights.sample(self.history.objectives, normalization, rng)
+        """Draw weights of the objectives; where these are in the user's units, tails are compressed as everywhere."""
+        tails = self._models.tails()
+        return self._method.weights.sample(
+            self.history.objectives, lambda y: normalization(compress(y[None], tails)[0]), rng
+        )
 
     def _scorer(
         self, context: AcquisitionContext, feasibility: FeasibilityPosterior | None, guidance: Guidance
@@ -262,7 +275,7 @@ class BayesianOptimizer(Optimizer):
         if least >= 1 or not self._has_promises() or axes.sum() < FEWEST_CHECKED:
             return scorer
         mean = context.posterior.predict(self.history.X()).mean
-        factor = boundary_factor(self.history, mean, least)
+        factor = boundary_factor(self.history, self._models.told(), mean, least)
         return scorer if factor == 1 else BoundaryWeighted(inner=scorer, axes=axes, factor=factor)
 
     def _searching(self, feasibility: FeasibilityPosterior, guidance: Guidance) -> Scorer:

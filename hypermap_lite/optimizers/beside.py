@@ -17,6 +17,7 @@ from hypermap_lite.evaluation.outcome import Evaluation, State
 from hypermap_lite.history.history import objectives_of
 from hypermap_lite.history.pooling import key_of
 from hypermap_lite.objectives import Objective
+from hypermap_lite.surrogates.tails import Tails, compress
 
 FAR: Final = 3.0
 """Values farther beyond the feasible ones than so many of their ranges are taken for placeholders."""
@@ -25,20 +26,22 @@ MOST: Final = 100
 """The last so many are learned from; each more makes a process slower, and late ones are where the search is."""
 
 
-def telling(evaluations: Sequence[Evaluation], objectives: Sequence[Objective]) -> list[Evaluation]:
+def telling(evaluations: Sequence[Evaluation], objectives: Sequence[Objective], tails: Tails = ()) -> list[Evaluation]:
     """Return the infeasible evaluations whose objective values are likely to mean something.
 
-    Those with a value of every objective, none of which is farther from the feasible ones than `FAR` of their ranges or
-    is, to the last digit, that of another infeasible configuration; of these the last `MOST`.
+    Those with a value of every objective, none of which is farther from the feasible ones than `FAR` of their ranges,
+    with their tails compressed, or is, to the last digit, that of another infeasible configuration; of these the last
+    `MOST`.
     """
     completed = [e for e in evaluations if e.is_completed]
     infeasible = [e for e in evaluations if e.state is State.INFEASIBLE and all(o.name in e.values for o in objectives)]
     if not completed or not infeasible:
         return []
-    feasible, Y = objectives_of(completed, objectives), objectives_of(infeasible, objectives)
+    Y = objectives_of(infeasible, objectives)
+    feasible, known = compress(objectives_of(completed, objectives), tails), compress(Y, tails)
     low, high = feasible.min(axis=0), feasible.max(axis=0)
     reach = FAR * (high - low)
-    is_near = ((low - reach <= Y) & (high + reach >= Y)).all(axis=1)
+    is_near = ((low - reach <= known) & (high + reach >= known)).all(axis=1)
     seen: dict[tuple[int, float], set[Hashable]] = defaultdict(set)
     for evaluation, row in zip(infeasible, Y, strict=True):
         for k, value in enumerate(row.tolist()):

@@ -35,22 +35,24 @@ ENOUGH: Final = 1 / 2
 """Where a larger share is kept, it is one. So it is before the first promise, and no longer after one broken."""
 
 
-def boundary_factor(history: History, mean: FloatArray, least: float) -> float:
+def boundary_factor(history: History, observed: FloatArray, mean: FloatArray, least: float) -> float:
     """Return the factor of what a point on a bound promises, between `least` and one.
 
     Parameters
     ----------
     history
         The evaluations.
-    mean
-        The objectives of those that completed, by the model of now, shape (n, m).
+    observed, mean
+        The objectives of those that completed, as the model of now is told them and by that model, shape (n, m).
     least
         Factor where next to no promise is kept, in (0, 1].
     """
     if least >= 1 or len(mean) < MIN_COMPLETED:
         return 1.0
     is_near = nearness(history.X_all(), history.space.is_continuous).max(axis=1) >= NEAR
-    kept = are_kept([promise for promise in promises_of(history) if is_near[promise.row]], history, mean)
+    kept = are_kept(
+        [promise for promise in promises_of(history) if is_near[promise.row]], history.objectives, observed, mean
+    )
     share = (sum(kept) + 0.5) / (len(kept) + 1)
     doubt = min(max((ENOUGH - share) / (ENOUGH - FEW), 0.0), 1.0)
     return float(least**doubt)

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighting
 from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
-from hypermap_lite.history.history import History, objectives_of
-from hypermap_lite.objectives import reference_point_of
+from hypermap_lite.history.history import History, Samples, objectives_of
+from hypermap_lite.history.replicate_noise import shrunk_variances
+from hypermap_lite.objectives import reference_point_of, stated_or
 from hypermap_lite.optimizers.beside import telling
 from hypermap_lite.optimizers.prior_trust import Evidence
 from hypermap_lite.optimizers.streams import Stream, generator
+from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.surrogates.base import Posterior, Surrogate
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
+from hypermap_lite.surrogates.tails import Tails, compress, slopes
 from hypermap_lite.typing import FloatArray
+
+logger = logging.getLogger(__name__)
 
 MIN_COMPLETED = 2
 """With fewer completed evaluations there is no objective to model."""
@@ -53,19 +60,81 @@ class Models:
         self._feasibility_weighting = feasibility_weighting
         self._seed = seed
         self._warm_starts: dict[int, Any] = {}
+        self._tails: dict[int, Tails] = {}
+        self._announced: set[str] = set()
         self._posterior_of: tuple[tuple[int, ...], Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
     def observed(self, n: int | None = None) -> tuple[FloatArray, FloatArray]:
         """Return what the surrogate is fitted to: the completed evaluations, or one row per distinct configuration.
 
-        With n, those of the first n rows of the history.
+        With n, those of the first n rows of the history. Their `tails` are compressed, as they are in all posteriors.
         """
+        X, Y = self._reported(n)
+        return X, compress(Y, self.tails(n))
+
+    def n_observed(self, n: int | None = None) -> int:
+        """Return the number of rows of `observed`."""
+        return len(self._reported(n)[0])
+
+    def told(self) -> FloatArray:
+        """Return the objectives of all completed evaluations with their tails compressed, shape (n, m)."""
+        return compress(self._history.Y(), self.tails())
+
+    def _reported(self, n: int | None = None) -> tuple[FloatArray, FloatArray]:
+        """Return the same with the values as they are."""
         if self._surrogate.noise_from_replicates:
             samples = self._history.samples(n)
             return samples.X, samples.Y
         k = sum(row.is_completed for row in list(self._history)[:n])
         return self._history.X()[:k], self._history.Y()[:k]
+
+    def tails(self, n: int | None = None) -> Tails:
+        """Return how the surrogate wants the objectives' tails compressed, by the first n rows of the history.
+
+        That is worked out at the milestones and kept between them, so that promises can be compared with what came of
+        them.
+        """
+        growth, found = self._surrogate.warm_start_growth, self._tails_at(0)
+        for k in () if growth is None else milestones(self.n_observed(n) + 1, growth):
+            found = self._tails_at(k)
+        return found
+
+    def _tails_at(self, k: int) -> Tails:
+        if k not in self._tails:
+            self._tails[k] = self._tails_after(k)
+        return self._tails[k]
+
+    def _tails_after(self, k: int) -> Tails:
+        """Return the tails by the first k evaluations, or distinct configurations."""
+        objectives = self._history.objectives
+        if not k:
+            return (None,) * len(objectives)
+        if self._surrogate.noise_from_replicates:
+            X, Y = self._reported(self._history.ends_of_samples()[k - 1])
+        else:
+            X, Y = self._history.X()[:k], self._history.Y()[:k]
+        least = np.full(1, -np.inf)
+        if len(objectives) > 1:
+            least = stated_or(objectives, Y[non_dominated(Y)].max(axis=0))
+        space = self._history.space
+        tails = self._surrogate.tails(X, Y, least, is_ordered=space.is_ordered, permutations=space.permutations)
+        self._announce(tails, k)
+        return tails
+
+    def _announce(self, tails: Tails, k: int) -> None:
+        """Log, once per objective, that it has a tail."""
+        for objective, tail in zip(self._history.objectives, tails, strict=True):
+            if tail is not None and objective.name not in self._announced:
+                self._announced.add(objective.name)
+                logger.info(
+                    "after %d evaluations: values of %s %s %.4g are far beyond the rest; the model learns from their"
+                    " logarithm",
+                    k,
+                    objective.name,
+                    "above" if objective.sign > 0 else "below",
+                    objective.sign * tail.limit,
+                )
 
     def posterior(self) -> Posterior:
         """Return what is known of the objectives after the completed evaluations, of which there must be one."""
@@ -80,12 +149,14 @@ class Models:
 
     def _beside(self, n: int) -> list[Evaluation]:
         """Return what else the surrogate learns from among the first n rows: infeasible evaluations."""
-        return telling(list(self._history)[:n], self._history.objectives) if self._surrogate.learn_infeasible else []
+        if not self._surrogate.learn_infeasible:
+            return []
+        return telling(list(self._history)[:n], self._history.objectives, self.tails(n))
 
     def _posterior_after(self, n: int, beside: list[Evaluation]) -> Posterior:
         """Return the posterior given the first n rows of the history, of which some only inform."""
         X = self._history.space.encode([row.configuration for row in beside])
-        known = X, objectives_of(beside, self._history.objectives)
+        known = X, compress(objectives_of(beside, self._history.objectives), self.tails(n))
         return (
             self._fit_samples(n, known)
             if self._surrogate.noise_from_replicates
@@ -133,7 +204,8 @@ class Models:
         n, start, growth = len(X), None, self._surrogate.warm_start_growth
         for k in () if growth is None else milestones(n, growth):
             if k not in self._warm_starts:
-                self._warm_starts[k] = self._fit_from(X[:k], Y[:k], start, anew=True).hyperparameters
+                first = compress(self._history.Y()[:k], self._tails_at(k))
+                self._warm_starts[k] = self._fit_from(X[:k], first, start, anew=True).hyperparameters
             start = self._warm_starts[k]
         posterior = self._fit_from(X, Y, start, beside=beside, anew=is_milestone(n, growth))
         if is_milestone(n, growth) and not len(beside[0]):
@@ -151,11 +223,13 @@ class Models:
         for k in () if growth is None else milestones(len(samples.X), growth):
             if k not in self._warm_starts:
                 first = self._history.samples(ends[k - 1])
-                fitted = self._fit_from(first.X, first.Y, start, first.noise_variance, anew=True)
+                Y, noise_variance = compressed(first, self.tails(ends[k - 1]))
+                fitted = self._fit_from(first.X, Y, start, noise_variance, anew=True)
                 self._warm_starts[k] = fitted.hyperparameters
             start = self._warm_starts[k]
         anew = is_milestone(len(samples.X), growth)
-        return self._fit_from(samples.X, samples.Y, start, samples.noise_variance, beside=beside, anew=anew)
+        Y, noise_variance = compressed(samples, self.tails(n))
+        return self._fit_from(samples.X, Y, start, noise_variance, beside=beside, anew=anew)
 
     def _fit_from(
         self,
@@ -185,6 +259,16 @@ class Models:
             noise_variance=noise_variance,
             n_beside=n_beside,
         )
+
+
+def compressed(samples: Samples, tails: Tails) -> tuple[FloatArray, FloatArray | None]:
+    """Return the objectives of k configurations with their tails compressed, and what noise that leaves of theirs."""
+    if samples.variances is None or not any(tails):
+        return compress(samples.Y, tails), samples.noise_variance
+    # before they are shrunk: what a penalty among replicates makes of one variance is not usual for the others
+    own = samples.own_variances * slopes(samples.Y, tails) ** 2
+    shrunk = replace(samples, variances=shrunk_variances(own, samples.freedom))
+    return compress(samples.Y, tails), shrunk.noise_variance
 
 
 def is_milestone(n: int, growth: float | None) -> bool:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.priors.beliefs import Belief
 from hypermap_lite.space.search_space import SearchSpace
-from hypermap_lite.surrogates.base import Prediction
+from hypermap_lite.surrogates.base import Prediction, Predictor
 from hypermap_lite.typing import FloatArray, Rng
 
 LEVELS: Final = (1.0, 0.5, 0.25, 0.0)
@@ -59,14 +59,6 @@ SMALLEST_DIRECTION: Final = 1e-3
 
 MARGIN: Final = 0.1
 """How far beyond the front an inferred reference point lies, as a share of the front's range."""
-
-
-class Predictor(Protocol):
-    """All a check needs to know of a posterior."""
-
-    def predict(self, X: FloatArray) -> Prediction:
-        """Predict the noise-free objectives at n points, shape (n, d)."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,14 +7,14 @@ expectation, and few bold steps give theirs; they count as broken, on purpose.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from hypermap_lite.evaluation.outcome import MODEL
 from hypermap_lite.history.history import History
-from hypermap_lite.objectives import reference_point_of, stated_or
+from hypermap_lite.objectives import Objective, reference_point_of, stated_or
 from hypermap_lite.optimizers.models import MIN_COMPLETED
 from hypermap_lite.pareto.hypervolume import hypervolume, infer_reference_point
 from hypermap_lite.scalarization.base import Normalization
@@ -54,21 +54,24 @@ def promises_of(history: History) -> list[Promise]:
     return found
 
 
-def are_kept(promises: Iterable[Promise], history: History, mean: FloatArray) -> list[bool]:
+def are_kept(
+    promises: Iterable[Promise], objectives: Sequence[Objective], observed: FloatArray, mean: FloatArray
+) -> list[bool]:
     """Tell of each promise whether it came true; of an evaluation that did not complete nothing did.
 
     Parameters
     ----------
     promises
         Some of the `promises_of` the history.
-    history
-        The evaluations.
+    objectives
+        What they are, m of them.
+    observed
+        Their values at the evaluations that completed, as the model of now is told them, shape (n, m).
     mean
-        The objectives of those that completed, by the model of now, so that luck is not taken for a kept promise, shape
-        (n, m).
+        The same by that model, so that luck is not taken for a kept promise, shape (n, m).
     """
-    observed, stated = history.Y(), reference_point_of(history.objectives)
-    reference_point = stated_or(history.objectives, infer_reference_point(mean)) if mean.shape[1] > 1 else None
+    stated = reference_point_of(objectives)
+    reference_point = stated_or(objectives, infer_reference_point(mean)) if mean.shape[1] > 1 else None
 
     def is_kept(promise: Promise) -> bool:
         k = promise.n_before

@@ -12,6 +12,7 @@ from hypermap_lite.evaluation.outcome import CONFIRM, MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.promises import are_kept, promises_of
 from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.typing import FloatArray
 
 PATIENCE: Final = 4
 """So many suggestions of the model in a row add nothing to the front where a search stands still."""
@@ -48,13 +49,22 @@ def stands_still(history: History) -> bool:
     return len(added) == PATIENCE and not any(added)
 
 
-def is_in_the_dark(history: History, posterior: Posterior) -> bool:
+def is_in_the_dark(history: History, observed: FloatArray, posterior: Posterior) -> bool:
     """Tell whether there is an objective of which the model knows no more than the mean, and its promises are broken.
 
     So it is on a plateau with noise: what is learnt of it is that the noise is large and that something may be
     anywhere. A model whose last steps gave what they promised is left alone, however little it knows, and so is one
     that knows something of each objective. Steps that a prior guides promise nothing that could be broken, so the rule
     waits until there have been enough without one in a row.
+
+    Parameters
+    ----------
+    history
+        The evaluations.
+    observed
+        The objectives of those that completed, as the model is told them, shape (n, m).
+    posterior
+        What it knows.
     """
     patience = PATIENCE_IN_THE_DARK if len(history.objectives) > 1 else PATIENCE_WITH_ONE
     chosen = [row for row, evaluation in enumerate(history) if evaluation.suggestion.phase == MODEL][-patience:]
@@ -64,7 +74,7 @@ def is_in_the_dark(history: History, posterior: Posterior) -> bool:
     explained = posterior.explained()
     if explained is None or (explained > NOTHING).all():
         return False
-    return not any(are_kept(promises, history, posterior.predict(history.X()).mean))
+    return not any(are_kept(promises, history.objectives, observed, posterior.predict(history.X()).mean))
 
 
 def draws_at_end(suggestions: Iterable[Suggestion]) -> int:

@@ -11,10 +11,10 @@ from hypermap_lite.optimizers.base import Optimizer, single_threaded
 from hypermap_lite.optimizers.bayesian import BayesianOptimizer
 from hypermap_lite.optimizers.models import MIN_COMPLETED
 from hypermap_lite.scenario.model import ComponentSpec, Scenario
-from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.surrogates.base import Predictor
 
 
-def fitted(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> Posterior:
+def fitted(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> Predictor:
     """Return the scenario's surrogate, fitted to a history as Bayesian optimization would, whatever the optimizer.
 
     Parameters
@@ -39,4 +39,4 @@ def fitted(scenario: Scenario, history: History, optimizer: Optimizer | None = N
     if not optimizer.has_model():
         raise UsageError("the completed evaluations are of too few configurations that did not fail when confirmed")
     with single_threaded():
-        return optimizer.posterior()
+        return optimizer.predictor()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -11,6 +11,9 @@ import numpy as np
 from hypermap_lite.objectives import Objective
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.typing import FloatArray, Rng
+
+Normalize = Callable[[FloatArray], FloatArray]
+"""Brings objectives as they are reported, but to be minimized, shape (m,), to comparable sizes."""
 
 SMALLEST_EXTENT = 1e-3
 """Smallest range of the front that counts as a trade-off, as a share of the range of all evaluations."""
@@ -81,6 +84,6 @@ class WeightSampling(Protocol):
         """How often weights at which no point promises anything may be drawn again."""
         ...
 
-    def sample(self, objectives: Sequence[Objective], normalization: Normalization, rng: Rng) -> FloatArray:
+    def sample(self, objectives: Sequence[Objective], normalize: Normalize, rng: Rng) -> FloatArray:
         """Return m weights >= 0 that sum to one, shape (m,)."""
         ...

@@ -10,7 +10,7 @@ import numpy as np
 
 from hypermap_lite.errors import ScenarioError, nearest
 from hypermap_lite.objectives import Objective
-from hypermap_lite.scalarization.base import Normalization
+from hypermap_lite.scalarization.base import Normalize
 from hypermap_lite.typing import FloatArray, Rng
 
 SMALLEST = 1e-2
@@ -51,7 +51,7 @@ class Dirichlet:
         if self.redraws < 0:
             raise ScenarioError("$.redraws", f"there are {self.redraws} draws", allowed="an integer >= 0")
 
-    def sample(self, objectives: Sequence[Objective], normalization: Normalization, rng: Rng) -> FloatArray:
+    def sample(self, objectives: Sequence[Objective], normalize: Normalize, rng: Rng) -> FloatArray:
         """Return m weights that sum to one, shape (m,)."""
         m = len(objectives)
         if self.ends and rng.random() < self.ends:
@@ -97,8 +97,8 @@ class BoundingBox:
         if missing:
             raise ScenarioError("$.limits", f"no box for {missing[0]!r}", allowed="[low, high] for every objective")
 
-    def sample(self, objectives: Sequence[Objective], normalization: Normalization, rng: Rng) -> FloatArray:
+    def sample(self, objectives: Sequence[Objective], normalize: Normalize, rng: Rng) -> FloatArray:
         """Return m weights that sum to one, shape (m,)."""
         target = np.array([o.sign * rng.uniform(self.limits[o.name][0], self.limits[o.name][1]) for o in objectives])
-        weights = 1.0 / np.maximum(normalization(target), SMALLEST)
+        weights = 1.0 / np.maximum(normalize(target), SMALLEST)
         return weights / weights.sum()

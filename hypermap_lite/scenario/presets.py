@@ -27,6 +27,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "lengthscale_width": math.sqrt(3.0),
             "restart": True,
             "learn_infeasible": False,
+            "compress_tails": False,
         },
         "maximizer": {"type": "multistart_gradient", "smooth_levels": 0, "joint_tolerance": 0.0},
         "acquisition": {

@@ -26,7 +26,7 @@ CARE = ("prior_free", "safeguard", "make_up")
 UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
-SAID_IN_WORDS = ("learn_infeasible",)
+SAID_IN_WORDS = ("compress_tails", "learn_infeasible")
 """Options that have a sentence of their own."""
 
 
@@ -172,6 +172,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append("acquisition weighted by the probability of being feasible")
     if scenario.feasible_output is not None and scenario.surrogate.options.get("learn_infeasible"):
         lines.append("objective values of infeasible evaluations inform the model, unless they look like placeholders")
+    if scenario.surrogate.options.get("compress_tails"):
+        lines.append("values far beyond those that count, such as penalties, are compressed for the model")
     return [*lines, _prior_use(scenario)]
 
 

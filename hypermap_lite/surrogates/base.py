@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from hypermap_lite.space.permutation import PermutationParameter
+from hypermap_lite.surrogates.tails import Tails
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 Pullback = Callable[[FloatArray, FloatArray], FloatArray]
@@ -81,7 +82,15 @@ class Fantasies:
     """Predictions given each draw."""
 
 
-class Posterior(Protocol):
+class Predictor(Protocol):
+    """What predicts, and no more."""
+
+    def predict(self, X: FloatArray) -> Prediction:
+        """Predict the noise-free objectives at n points, shape (n, d)."""
+        ...
+
+
+class Posterior(Predictor, Protocol):
     """What is known of m objectives after n evaluations. Immutable."""
 
     @property
@@ -99,10 +108,6 @@ class Posterior(Protocol):
 
         Shape (m,), at most 1; with 0 or less nothing is known of an objective but its mean. None if that is not known.
         """
-        ...
-
-    def predict(self, X: FloatArray) -> Prediction:
-        """Predict the noise-free objectives at n points, shape (n, d)."""
         ...
 
     def field(self, X: FloatArray) -> Conditional:
@@ -141,6 +146,26 @@ class Surrogate(Protocol):
     @property
     def learn_infeasible(self) -> bool:
         """Whether objective values of infeasible evaluations are among what it is fitted to."""
+        ...
+
+    def tails(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        least: FloatArray,
+        *,
+        is_ordered: BoolArray,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Tails:
+        """Return which values of each objective are so far beyond the rest that `fit` wants them compressed.
+
+        Parameters
+        ----------
+        X, Y, is_ordered, permutations
+            As in `fit`.
+        least
+            What is below these values counts and is left as it is, shape (m,).
+        """
         ...
 
     def fit(

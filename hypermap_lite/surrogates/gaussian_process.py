@@ -23,6 +23,7 @@ from hypermap_lite.surrogates.base import (
 from hypermap_lite.surrogates.beside import Fitted, with_beside
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import (
+    REJECTED,
     Hyperparameters,
     HyperPrior,
     MarginalLikelihood,
@@ -30,6 +31,7 @@ from hypermap_lite.surrogates.marginal_likelihood import (
 )
 from hypermap_lite.surrogates.paths import Path
 from hypermap_lite.surrogates.process import Process, ProcessField, Standardized
+from hypermap_lite.surrogates.tails import FEW, MARGIN, Tails, likely_tail
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 FANTASY_JITTER = 1e-8
@@ -77,6 +79,9 @@ class GaussianProcess:
     learn_infeasible: bool = True
     """Whether it is fitted to the objective values of infeasible evaluations, too."""
 
+    compress_tails: bool = True
+    """Whether values far beyond those that count are compressed where that makes all values much likelier."""
+
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
             raise ScenarioError("$.noise_floor", f"the floor is {self.noise_floor}", allowed="a number > 0, at most 1")
@@ -94,6 +99,42 @@ class GaussianProcess:
         """Fits without a restart start from closer ones."""
         return 1.5 if self.restart else 1.2
 
+    def tails(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        least: FloatArray,
+        *,
+        is_ordered: BoolArray,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Tails:
+        """Compare a process of each objective with one of what its `likely_tail` leaves; see `Surrogate.tails`."""
+        if not self.compress_tails:
+            return (None,) * Y.shape[1]
+        prior, found = self._prior(is_ordered, permutations), []
+        for y, limit in zip(Y.T, least, strict=True):
+            tail = likely_tail(y, float(limit))
+            if tail is not None:
+                plain, scale = _log_density(X, y, prior, is_ordered, permutations)
+                compressed, compressed_scale = _log_density(X, tail.compress(y), prior, is_ordered, permutations)
+                distinct = tail.distinct(y)
+                by_slope = float(tail.log_slope(distinct).sum()) + len(distinct) * math.log(scale / compressed_scale)
+                if not compressed - plain + by_slope >= MARGIN * max(len(y), FEW) or plain <= -REJECTED:
+                    tail = None
+            found.append(tail)
+        return found
+
+    def _prior(self, is_ordered: BoolArray, permutations: Permutations) -> HyperPrior:
+        return HyperPrior.over(
+            is_ordered if self.categorical_prior else np.ones_like(is_ordered),
+            permutations,
+            has_noise=self.noise,
+            noise_floor=self.noise_floor,
+            noise_tail=self.noise_tail,
+            lengthscale_location=self.lengthscale_location,
+            lengthscale_sigma=self.lengthscale_width,
+        )
+
     def fit(
         self,
         X: FloatArray,
@@ -108,15 +149,7 @@ class GaussianProcess:
         n_beside: int = 0,
     ) -> Posterior:
         """Fit each objective's hyperparameters by maximum a posteriori; see `Surrogate.fit`."""
-        prior = HyperPrior.over(
-            is_ordered if self.categorical_prior else np.ones_like(is_ordered),
-            permutations,
-            has_noise=self.noise,
-            noise_floor=self.noise_floor,
-            noise_tail=self.noise_tail,
-            lengthscale_location=self.lengthscale_location,
-            lengthscale_sigma=self.lengthscale_width,
-        )
+        prior = self._prior(is_ordered, permutations)
         if noise_variance is not None and self.noise:
             prior = prior.of_known_noise()
         n = len(X) - n_beside
@@ -238,6 +271,16 @@ class GaussianProcessPosterior:
             return Conditional(mean=mean, std=np.zeros_like(mean), pullback=pullback)
 
         return field
+
+
+def _log_density(
+    X: FloatArray, y: FloatArray, prior: HyperPrior, is_ordered: BoolArray, permutations: Permutations
+) -> tuple[float, float]:
+    """Return the log density of n standardized outputs and their likeliest hyperparameters; and the outputs' scale."""
+    output = Standardized.of(y)
+    likelihood = MarginalLikelihood(X, output.values, is_ordered, prior, permutations)
+    best = fit_hyperparameters(likelihood, [prior.mode()], is_exact=False)
+    return -likelihood(best.to_log())[0], output.scale
 
 
 def combine(fields: Sequence[ProcessField], X: FloatArray) -> Conditional:

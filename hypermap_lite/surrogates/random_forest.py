@@ -18,6 +18,7 @@ from hypermap_lite.surrogates.base import (
     Posterior,
     Prediction,
 )
+from hypermap_lite.surrogates.tails import Tails
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 if TYPE_CHECKING:
@@ -75,6 +76,18 @@ class RandomForest:
             raise ScenarioError("$.min_samples_leaf", f"it is {self.min_samples_leaf}", allowed=">= 1")
         if self.min_samples_split is not None and self.min_samples_split < 2:
             raise ScenarioError("$.min_samples_split", f"it is {self.min_samples_split}", allowed=">= 2")
+
+    def tails(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        least: FloatArray,
+        *,
+        is_ordered: BoolArray,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Tails:
+        """Return none: trees split by order, and where values are far apart."""
+        return (None,) * Y.shape[1]
 
     def fit(
         self,

@@ -10,14 +10,18 @@ from scipy.optimize import minimize
 
 from benchmarks.problems import PROBLEMS
 from benchmarks.problems.emulated import EMULATED, TASKS, Landscape
+from benchmarks.problems.formulas import HARTMANN6_MINIMIZER
 from hypermap_lite import hypervolume, load_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "example_scenarios" / "robot"
 
 MINIMIZERS = {
     "branin": [(-math.pi, 12.275), (math.pi, 2.275), (3 * math.pi, 2.475)],
-    "hartmann6": [(0.20168952, 0.15001069, 0.47687398, 0.27533243, 0.31165162, 0.65730054)],
+    "hartmann6": [tuple(HARTMANN6_MINIMIZER)],
+    "hartmann6_penalized": [tuple(HARTMANN6_MINIMIZER)],
     "ackley5": [(0.0,) * 5],
+    "goldstein_price": [(0, -1)],
+    "zakharov4": [(0,) * 4],
     "func2c": [(1, 1, 0.0898420131 / 2, -0.712656403 / 2), (1, 1, -0.0898420131 / 2, 0.712656403 / 2)],
 }
 
@@ -84,6 +88,12 @@ def test_front_of_dtlz2_with_three_objectives_gives_the_hypervolume_in_closed_fo
 def test_fine_grid_of_the_square_reaches_the_published_hypervolume(name):
     # The second one is of a run of NSGA-II, which the grid surpasses by 0.06 %.
     assert 0.998 < share(name, grid(name, 2001)) < 1.001
+
+
+def test_fine_grid_of_what_dominates_the_reference_point_reaches_the_hypervolume_of_tnk():
+    axis = np.linspace(0, PROBLEMS["tnk"].reference_point[0], 2601)
+    X = np.column_stack([u.ravel() for u in np.meshgrid(axis, axis)])
+    assert 0.998 < share("tnk", X) < 1
 
 
 def test_front_of_c2_dtlz2_gives_the_published_hypervolume():

@@ -46,7 +46,7 @@ def history(*rows: Any, m: int = 2, reference_point: float | None = 2.0) -> Hist
 
 def factor_after(*rows: Any, least: float = 0.3, **options: Any) -> float:
     known = history(START, ("design", 0.4, (1.1, 0.9), {}), *rows, **options)
-    return boundary_factor(known, known.Y(), least)
+    return boundary_factor(known, known.Y(), known.Y(), least)
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_gain_that_is_small_for_the_promise_breaks_it() -> None:
 def test_with_one_objective_the_gain_is_the_improvement(y: float, expected: float) -> None:
     rows = [("design", 0.4, (1.5,), {}), ("design", 0.5, (1.0,), {}), (MODEL, 0.0, (y,), {})]
     known = history(*rows, m=1)
-    assert boundary_factor(known, known.Y(), 0.3) == expected
+    assert boundary_factor(known, known.Y(), known.Y(), 0.3) == expected
 
 
 def test_reference_point_is_inferred_where_none_is_given() -> None:
@@ -95,8 +95,8 @@ def test_luck_is_no_kept_promise() -> None:
     known = history(START, ("design", 0.4, (1.1, 0.9), {}), (MODEL, 0.0, GAIN, {}))
     by_the_model = known.Y().copy()
     by_the_model[2] = LOSS
-    assert boundary_factor(known, known.Y(), 0.3) == 1.0
-    assert boundary_factor(known, by_the_model, 0.3) == 0.3
+    assert boundary_factor(known, known.Y(), known.Y(), 0.3) == 1.0
+    assert boundary_factor(known, known.Y(), by_the_model, 0.3) == 0.3
 
 
 def test_point_near_several_bounds_is_on_none_of_them() -> None:
@@ -105,7 +105,7 @@ def test_point_near_several_bounds_is_on_none_of_them() -> None:
     corner = Suggestion(trial=2, configuration={"a": 0.08, "b": 0.08}, phase=MODEL, acquisition_value=math.log(0.1))
     near_both.append(Evaluation(suggestion=corner, state=State.COMPLETED, values=dict(zip(NAMES, LOSS, strict=True))))
     assert nearness(np.array([[0.08, 0.08]]), np.ones(2, dtype=bool)).sum() > 0.7
-    assert boundary_factor(near_both, near_both.Y(), 0.3) == 1.0
+    assert boundary_factor(near_both, near_both.Y(), near_both.Y(), 0.3) == 1.0
 
 
 def test_factor_of_one_is_no_discount() -> None:
@@ -174,7 +174,7 @@ def test_history_shows_what_was_promised_before_the_discount(monkeypatch: pytest
 def test_search_for_something_feasible_promises_nothing() -> None:
     rows = [START, (MODEL, 0.0, None, {}), (MODEL, 0.0, None, {}), ("design", 0.4, (1.1, 0.9), {})]
     known = history(*rows, ("design", 0.4, (1.2, 0.8), {}))
-    assert boundary_factor(known, known.Y(), 0.3) == 1.0
+    assert boundary_factor(known, known.Y(), known.Y(), 0.3) == 1.0
 
 
 def test_reference_point_may_be_given_for_one_objective_alone() -> None:
@@ -188,14 +188,14 @@ def test_reference_point_may_be_given_for_one_objective_alone() -> None:
         )
     )
     alone.extend(known)
-    assert boundary_factor(alone, alone.Y(), 0.3) == 0.3  # beyond what still counts
+    assert boundary_factor(alone, alone.Y(), alone.Y(), 0.3) == 0.3  # beyond what still counts
 
 
 @pytest.mark.parametrize("unit", [1e-120, 1e120])
 def test_units_of_the_objectives_do_not_matter(unit: float) -> None:
     rows = [(phase, a, tuple(unit * y for y in values), more) for phase, a, values, more in (START, *GOOD_ON_BOUND)]
     known = history(*rows, reference_point=2 * unit)
-    assert boundary_factor(known, known.Y(), 0.3) == 1.0
+    assert boundary_factor(known, known.Y(), known.Y(), 0.3) == 1.0
 
 
 @pytest.mark.parametrize("stop", [15, 25])

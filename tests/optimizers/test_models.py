@@ -1,5 +1,6 @@
 """What the history teaches: the chain of fits."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ from hypermap_lite.optimizers.bayesian import BayesianOptimizer
 from hypermap_lite.optimizers.models import FIRST_MILESTONE, milestones
 from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.surrogates.gaussian_process import GaussianProcess, GaussianProcessPosterior
-from tests.optimizers.runs import resumed, scenario_of
+from hypermap_lite.typing import Configuration
+from tests.optimizers.runs import Function, evaluate, resumed, run, scenario_of
 
 
 def test_milestones_grow_by_the_factor() -> None:
@@ -73,3 +75,134 @@ def test_a_fit_does_not_depend_on_when_it_was_asked_for() -> None:
             last = optimizer.posterior()
     X = np.random.default_rng(0).random((5, 2))
     assert np.array_equal(last.predict(X).mean, fitted(rows).predict(X).mean)
+
+
+def penalized(configuration: Configuration) -> dict[str, float]:
+    """Return a smooth valley where it is cheap, and a penalty where it fails, as it does for most."""
+    a, b = float(configuration["a"]), float(configuration["b"]) / 10 + 0.5
+    return {"y": (a - 0.3) ** 2 + 2 * (b - 0.35 - 0.3 * a) ** 2 if a + b < 0.9 else 1e5}
+
+
+def rows_of(function: Function, n: int, seed: int = 4) -> list[Evaluation]:
+    """Return evaluations at random points."""
+    rng = np.random.default_rng(seed)
+    places = [{"a": float(a), "b": float(10 * b - 5)} for a, b in rng.random((n, 2))]
+    suggestions = [Suggestion(trial=k, configuration=place, phase="design") for k, place in enumerate(places)]
+    return [evaluate(suggestion, function) for suggestion in suggestions]
+
+
+def bayesian(rows: list[Evaluation], **changes: Any) -> BayesianOptimizer:
+    optimizer = resumed(scenario_of(objectives=[{"name": "y"}], **changes), rows)
+    assert isinstance(optimizer, BayesianOptimizer)
+    return optimizer
+
+
+def test_penalties_are_compressed_so_that_the_model_sees_the_rest() -> None:
+    rows = rows_of(penalized, 30)
+    places = [row.configuration for row in rows_of(penalized, 300, seed=5)]
+    known = [place for place in places if penalized(place)["y"] < 1]
+    truth = np.array([penalized(place)["y"] for place in known])
+    errors = []
+    for compresses in (True, False):
+        optimizer = bayesian(rows, surrogate={"compress_tails": compresses})
+        mean = optimizer.predictor().predict(optimizer.history.space.encode(known)).mean[:, 0]
+        errors.append(float(np.median(np.abs(mean - truth))))
+    assert errors[0] < 1 < 10 < errors[1]
+
+
+def test_predictions_are_of_what_is_reported() -> None:
+    optimizer = bayesian(rows_of(penalized, 30))
+    space, Y = optimizer.history.space, optimizer.history.Y()[:, 0]
+    prediction = optimizer.predictor().predict(optimizer.history.X())
+    assert np.median(prediction.mean[Y == 1e5, 0]) == pytest.approx(1e5, rel=0.5)
+    inside = space.encode([{"a": 0.3, "b": -0.6}])
+    compressed = optimizer.posterior().predict(inside)
+    assert np.array_equal(optimizer.predictor().predict(inside).mean, compressed.mean)
+
+
+def test_tails_are_those_of_the_last_milestone(caplog: pytest.LogCaptureFixture) -> None:
+    rows = rows_of(penalized, 30)
+    with caplog.at_level("INFO"):
+        models = bayesian(rows)._models
+        assert models.tails(7) == (None,)
+        assert models.tails(30) == models.tails(28) != models.tails(12)
+    assert [record.message.split(";")[0] for record in caplog.records] == [
+        "after 13 evaluations: values of y above 0.4803 are far beyond the rest"
+    ]
+
+
+@pytest.mark.parametrize("from_replicates", [False, True])
+def test_a_fit_to_compressed_tails_does_not_depend_on_when_it_was_asked_for(from_replicates: bool) -> None:
+    changes = {"surrogate": {"noise_from_replicates": from_replicates}}
+    rows = rows_of(penalized, 30)
+    optimizer = bayesian([], **changes)
+    for row in rows:
+        optimizer.history.append(row)
+        if len(optimizer.history) > 5:
+            last = optimizer.posterior()
+    X = np.random.default_rng(0).random((5, 2))
+    assert np.array_equal(last.predict(X).mean, bayesian(rows, **changes).posterior().predict(X).mean)
+
+
+def test_a_penalty_among_replicates_is_not_the_noise_of_the_others() -> None:
+    rng = np.random.default_rng(0)
+    rows = []
+    for k, row in enumerate(rows_of(penalized, 30)):
+        values = row.values["y"] + 0.005 * rng.standard_normal(3)
+        if k == 20:
+            values = np.array([1e5, 0.30, 0.31])
+        error = float(values.std(ddof=1) / np.sqrt(3))
+        rows.append(replace(row, values={"y": float(values.mean())}, standard_errors={"y": error}, replicates=3))
+    optimizer = bayesian(rows, surrogate={"noise_from_replicates": True})
+    posterior = optimizer.posterior()
+    assert isinstance(posterior, GaussianProcessPosterior)
+    (process,) = posterior.processes
+    noise = np.sqrt(process.noise_variances) * process.output.scale
+    assert np.median(noise[optimizer.history.Y()[:, 0] < 1]) < 0.05
+
+
+def test_weights_from_boxes_in_the_users_units_see_compressed_tails() -> None:
+    def two(configuration: Configuration) -> dict[str, float]:
+        return {"near": penalized(configuration)["y"], "far": float(configuration["a"])}
+
+    boxes = {"type": "bounding_box", "limits": {"near": [0, 1000], "far": [0, 1]}}
+    scenario = scenario_of(
+        objectives=[{"name": "near"}, {"name": "far"}],
+        acquisition={"type": "noisy_expected_improvement", "scalarization": {"type": "tchebyshev"}, "weights": boxes},
+    )
+    optimizer = resumed(scenario, rows_of(two, 30))
+    assert isinstance(optimizer, BayesianOptimizer)
+    drawn = [optimizer._context(np.random.default_rng(seed), None).weights[0] for seed in range(40)]
+    assert np.mean(drawn) > 0.2  # as they are, 1000 is 1300 times the range of what counts
+
+
+def test_a_stated_reference_point_is_the_least_limit() -> None:
+    def two(configuration: Configuration) -> dict[str, float]:
+        y = penalized(configuration)["y"]
+        return {"near": y, "far": float(configuration["a"])}
+
+    for objectives, least in (
+        ([{"name": "near"}, {"name": "far"}], None),
+        ([{"name": "near", "reference_point": 40.0}, {"name": "far"}], 40.0),
+    ):
+        optimizer = resumed(scenario_of(objectives=objectives), rows_of(two, 30))
+        assert isinstance(optimizer, BayesianOptimizer)
+        tail, none = optimizer._models.tails()
+        assert none is None
+        assert tail is not None
+        assert tail.limit == least if least else tail.limit < 1
+
+
+def test_where_penalties_are_compressed_the_best_is_found() -> None:
+    best: dict[bool, list[float]] = {True: [], False: []}
+    for compresses, found in best.items():
+        for seed in range(3):
+            scenario = scenario_of(
+                objectives=[{"name": "y"}],
+                seed=seed,
+                surrogate={"compress_tails": compresses},
+                budget={"evaluations": 30},
+                design_of_experiment={"number_of_samples": 8},
+            )
+            found.append(min(e.values["y"] for e in run(scenario, 30, function=penalized).history))
+    assert np.median(best[True]) < 1e-5 < np.median(best[False])

@@ -36,12 +36,12 @@ def test_a_promise_is_kept_by_what_it_adds_to_the_front(
     values: tuple[float, float] | None, promised: float, expected: bool
 ) -> None:
     known = history(START, SECOND, (MODEL, 0.5, values, {"acquisition_value": math.log(promised)}))
-    assert are_kept(promises_of(known), known, known.Y()) == [expected]
+    assert are_kept(promises_of(known), known.objectives, known.Y(), known.Y()) == [expected]
 
 
 def test_what_counts_are_the_means_of_now() -> None:
     known = history(START, SECOND, (MODEL, 0.5, GAIN, {}))
     lucky = known.Y()
     lucky[2] = LOSS
-    assert are_kept(promises_of(known), known, known.Y()) == [True]
-    assert are_kept(promises_of(known), known, lucky) == [False]
+    assert are_kept(promises_of(known), known.objectives, known.Y(), known.Y()) == [True]
+    assert are_kept(promises_of(known), known.objectives, known.Y(), lucky) == [False]

@@ -117,20 +117,20 @@ def test_a_model_that_knows_nothing_of_an_objective_and_breaks_its_promises_is_i
     rows: Any, explained: Any, expected: bool
 ) -> None:
     known = history(KNOWN, ("design", (1.1, 0.9)), *rows)
-    assert is_in_the_dark(known, Known(known, explained)) is expected  # type: ignore[arg-type]
+    assert is_in_the_dark(known, known.Y(), Known(known, explained)) is expected  # type: ignore[arg-type]
 
 
 def test_a_gain_that_is_small_for_the_promise_leaves_it_in_the_dark() -> None:
     small = [(MODEL, (0.99 - 0.001 * k, 0.9)) for k in range(PATIENCE_IN_THE_DARK)]
     for promise, expected in ((1e4, True), (1e-6, False)):
         known = history(KNOWN, ("design", (1.1, 0.9)), *small, promise=promise)
-        assert is_in_the_dark(known, Known(known, (0.9, 0.0))) is expected  # type: ignore[arg-type]
+        assert is_in_the_dark(known, known.Y(), Known(known, (0.9, 0.0))) is expected  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("n", "expected"), [(PATIENCE_WITH_ONE - 1, False), (PATIENCE_WITH_ONE, True)])
 def test_one_objective_is_given_more_time(n: int, expected: bool) -> None:
     known = history(("design", (1.0,)), ("design", (1.1,)), *[(MODEL, (1.0,))] * n, objectives=1)
-    assert is_in_the_dark(known, Known(known, (0.0,))) is expected  # type: ignore[arg-type]
+    assert is_in_the_dark(known, known.Y(), Known(known, (0.0,))) is expected  # type: ignore[arg-type]
 
 
 def test_draws_in_a_row_are_counted_from_the_end() -> None:
@@ -198,7 +198,7 @@ def test_draws_lead_off_a_plateau_whose_noise_hides_that_it_is_one(monkeypatch: 
     assert len(drawn) >= 3
     assert all(trace.index(RANDOM) >= 4 + PATIENCE_IN_THE_DARK for trace in drawn)
     assert RANDOM not in phases_of(rough_slopes)
-    monkeypatch.setattr(bayesian, "is_in_the_dark", lambda history, posterior: False)
+    monkeypatch.setattr(bayesian, "is_in_the_dark", lambda history, observed, posterior: False)
     assert not any(RANDOM in phases_of(rough_plateau, seed) for seed in range(2))
 
 
@@ -216,7 +216,7 @@ def test_draws_lead_off_a_plateau_whose_noise_hides_that_it_is_one(monkeypatch: 
 def test_only_promises_that_are_checked_can_leave_a_model_in_the_dark(
     changes: Any, expected: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(bayesian, "is_in_the_dark", lambda history, posterior: True)
+    monkeypatch.setattr(bayesian, "is_in_the_dark", lambda history, observed, posterior: True)
     monkeypatch.setattr(bayesian, "stands_still", lambda history: False)
 
     def function(c: Configuration) -> dict[str, float]:

@@ -305,3 +305,31 @@ def test_nothing_is_explained_if_the_covariance_cannot_be_factorized(monkeypatch
     h = Hyperparameters(lengthscales=np.ones(2), output_variance=1.0, noise_variance=0.01)
     process = Process.condition(X, Standardized.of(Y[:, 0]), h, ORDERED)
     assert process.explained(ALL) == pytest.approx(0, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("values", "has_tail"),
+    [
+        (lambda X: np.sin(5 * X[:, 0]) + X[:, 1], False),
+        (lambda X: 100 * (X[:, 1] - 0.3) ** 2 + X[:, 0], False),  # large values that say what the function is like
+        (lambda X: np.where(X.sum(axis=1) > 1, 1e6, X[:, 0]), True),
+        (lambda X: np.where(X.sum(axis=1) > 1, 1e4 * X[:, 1] ** 3, X[:, 0]), True),
+        (lambda X: np.exp(12 * X[:, 0] + 3 * X[:, 1]), True),
+    ],
+)
+def test_tails_are_compressed_where_that_makes_all_outputs_likelier(values, has_tail: bool) -> None:
+    for seed in range(4):
+        X = np.random.default_rng(seed).random((24, 2))
+        Y = values(X)[:, None]
+        (tail,) = GaussianProcess().tails(X, Y, np.array([-np.inf]), is_ordered=ORDERED)
+        assert (tail is not None) == has_tail
+        assert GaussianProcess(compress_tails=False).tails(X, Y, np.zeros(1), is_ordered=ORDERED) == (None,)
+
+
+def test_what_counts_is_not_compressed() -> None:
+    X = np.random.default_rng(0).random((24, 2))
+    Y = np.column_stack([np.exp(12 * X[:, 0] + 3 * X[:, 1])] * 2)
+    tails = GaussianProcess().tails(X, Y, np.array([2e3, 1e9]), is_ordered=ORDERED)
+    assert tails[0] is not None
+    assert tails[0].limit >= 2e3
+    assert tails[1] is None
