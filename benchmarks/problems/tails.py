@@ -16,6 +16,9 @@ from .single import HARTMANN6
 PENALTY = 1e4
 """What a failure is worth."""
 
+PEG_PENALTY = 1e6
+"""The same for the peg, whose objectives are thousands."""
+
 REACH = 0.6
 """Distance from its minimizer up to which penalized Hartmann-6 does not fail."""
 
@@ -34,11 +37,11 @@ def plateau_penalized(X: FloatArray) -> FloatArray:
 
 
 def peg_penalized(X: FloatArray) -> FloatArray:
-    """Return peg insertion as emulated, with the penalty for both where the first is out of reach, shape (n, 2)."""
+    """Return peg insertion as emulated, with its penalty for both where the first is out of reach, shape (n, 2)."""
     known = EMULATED["peg_insertion_emulated"]
     Y = known.function(X)
     assert known.reference_point is not None
-    return np.where(Y[:, :1] < known.reference_point[0], Y, PENALTY)
+    return np.where(Y[:, :1] < known.reference_point[0], Y, PEG_PENALTY)
 
 
 TAILS: Mapping[str, Problem] = {
