@@ -19,7 +19,7 @@ import pandas as pd
 from problems import PROBLEMS, Problem
 from reporting import machine, markdown_table
 
-NAMES = ("branin_currin", "zdt2", "dtlz2", "constrained_branin_currin", "c2dtlz2", "chankong_haimes", "plateau")
+NAMES = ("branin_currin", "zdt2", "dtlz2", "constrained_branin_currin", "c2dtlz2", "chankong_haimes", "tnk", "plateau")
 METHOD = "default"
 START = 2**17
 """Random points at first."""
