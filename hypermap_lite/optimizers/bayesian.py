@@ -17,21 +17,19 @@ from hypermap_lite.acquisition.feasibility_weighted import (
 )
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.random_sampling import RandomSampling
-from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.evaluation.outcome import MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, are_apart
-from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of, stated_or
+from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.boundary import boundary_factor
+from hypermap_lite.optimizers.foreseen import foreseen_reference_point, spread_points
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.models import MIN_COMPLETED, Models
 from hypermap_lite.optimizers.stagnation import NEXT_TO_NOTHING, draws_at_end, is_in_the_dark, stands_still
 from hypermap_lite.optimizers.streams import Stream, generator
-from hypermap_lite.pareto.dominance import non_dominated
-from hypermap_lite.pareto.hypervolume import infer_reference_point
 from hypermap_lite.pareto.ranking import crowding_distances, non_dominated_ranks
 from hypermap_lite.priors.beliefs import Belief
 from hypermap_lite.priors.product import ProductPrior
@@ -48,15 +46,6 @@ MAX_INCUMBENTS = 8
 
 MAX_FRONT_INCUMBENTS = 12
 """The same, where the whole front is looked at."""
-
-SPREAD_POINTS = 512
-"""Points at which the ideal values of a constrained problem, and the ends of a front, are looked for."""
-
-MAX_SPREAD_DRAWS = 8192
-"""Draws at most to find as many that known constraints allow."""
-
-SURE = 0.1
-"""Standard deviation, as a share of the front's range, below which a prediction may move the reference point."""
 
 
 class BayesianOptimizer(Optimizer):
@@ -324,9 +313,11 @@ class BayesianOptimizer(Optimizer):
         normalization = Normalization.of_front(Y, reference_point)
         posterior = self._models.posterior()
         if feasibility is not None:
-            normalization = normalization.reaching(self._ideal(posterior, feasibility, rng))
+            normalization = normalization.reaching(
+                optimistic_ideal(posterior, feasibility, spread_points(self.history.space, rng))
+            )
         if reference_point is None and Y.shape[1] > 1 and not self._method.acquisition.is_scalarizing:
-            reference_point = self._foreseen_reference_point(posterior, feasibility, rng)
+            reference_point = foreseen_reference_point(posterior, feasibility, self.history, rng)
         return AcquisitionContext(
             posterior=posterior,
             X=X,
@@ -358,31 +349,6 @@ class BayesianOptimizer(Optimizer):
     def _suggestions(self) -> list[Suggestion]:
         """Return all suggestions so far, those under evaluation last."""
         return [*(e.suggestion for e in self.history), *self.in_flight]
-
-    def _ideal(self, posterior: Posterior, feasibility: FeasibilityPosterior, rng: Rng) -> FloatArray:
-        """Return what each objective may come down to where points are allowed and probably feasible, shape (m,)."""
-        return optimistic_ideal(posterior, feasibility, self._spread_points(rng))
-
-    def _foreseen_reference_point(
-        self, posterior: Posterior, feasibility: FeasibilityPosterior | None, rng: Rng
-    ) -> FloatArray:
-        """Return the reference point of the front that the model foresees, shape (m,).
-
-        That of the evaluated points alone would give nothing for an end of the front far from all of them. Only what is
-        predicted well counts: at the beginning a model foresees ends that are none.
-        """
-        X = self._spread_points(rng)
-        if feasibility is not None:
-            X = X[feasibility.log_probability(X) > math.log(0.5)]
-        evaluated, foreseen = posterior.predict(self.history.X()).mean, posterior.predict(X)
-        is_sure = (foreseen.std < SURE * np.ptp(evaluated[non_dominated(evaluated)], axis=0)).all(axis=1)
-        inferred = infer_reference_point(np.vstack([evaluated, foreseen.mean[is_sure]]))
-        return stated_or(self.history.objectives, inferred)
-
-    def _spread_points(self, rng: Rng) -> FloatArray:
-        """Return allowed points all over the space, shape (n, d)."""
-        space = self.history.space
-        return space.draw(SPREAD_POINTS, lambda n: sobol_points(n, space.dimension, rng), MAX_SPREAD_DRAWS)
 
     def _guidance(self, trial: int) -> Guidance:
         """Return the part of the prior in a suggestion, decaying with those before it that it had a part in."""

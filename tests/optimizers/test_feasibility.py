@@ -118,26 +118,6 @@ def test_no_acquisition_seeks_out_the_infeasible(acquisition: str, surrogate: st
     assert np.mean(by_model) >= 0.5
 
 
-def test_the_ideal_is_looked_for_where_known_constraints_allow() -> None:
-    scenario = scenario_of(constraints=["a <= 0.5"], objectives=[{"name": "near"}, {"name": "far"}])
-    optimizer = build_optimizer(load_scenario(scenario))
-    for suggestion in optimizer.ask(5):
-        a, b = (float(value) for value in suggestion.configuration.values())
-        state = State.COMPLETED if b < 3 else State.INFEASIBLE
-        values = {"near": -10 * a, "far": a + b}
-        optimizer.tell([Evaluation(suggestion=suggestion, state=state, values=values)])
-    seen: list[np.ndarray] = []
-
-    class Watched:
-        def log_probability(self, X: np.ndarray) -> np.ndarray:
-            seen.append(X)
-            return np.zeros(len(X))
-
-    optimizer._ideal(optimizer.posterior(), Watched(), np.random.default_rng(0))
-    assert len(seen[0]) == 512
-    assert optimizer.history.space.is_allowed(seen[0]).all()
-
-
 def test_weighting_can_be_switched_off() -> None:
     off = scenario_of(acquisition={"feasibility_weighting": "none"}, maximizer=LIGHT)
     assert configurations(constrained(off, 9)) != configurations(constrained(scenario_of(maximizer=LIGHT), 9))
