@@ -22,7 +22,7 @@ class FeasibilityWeighting:
 
     It says nothing as long as all evaluations have been feasible. The power 1 is the expected utility. It is too bold
     where much is to be gained beyond the boundary, for of all points those are chosen whose probability is
-    overestimated most: on Chakong and Haimes' problem an eighth of what expected hypervolume improvement chose was
+    overestimated most: on Chankong and Haimes' problem an eighth of what expected hypervolume improvement chose was
     feasible. A larger power trusts less.
 
     References

@@ -8,13 +8,13 @@ and the cliff in between sets the lengthscales. So values above a limit are comp
 or once more, with :math:`\log(1 + \log(1 + (y - l) / s))` in place of the logarithm; s is the range of the values below
 the limit l. Below it nothing changes, and the order of all values stays, so fronts and improvements are the same. This
 is a warped Gaussian process [1]_: the slope of the transform makes densities of the outputs comparable, and it is taken
-only where it makes them much likelier. Without that condition it costs more than it gains: the values of a smooth
-function that happen to be large say what it is like [2]_.
+only where it makes them much likelier. Transforming always [2]_ costs more than it gains: the values of a smooth
+function that happen to be large say what it is like.
 
 References
 ----------
 .. [1] Snelson, Rasmussen, Ghahramani. Warped Gaussian Processes. NIPS 2003.
-.. [2] Eriksson, Poloczek. Scalable Constrained Bayesian Optimization. AISTATS 2021, who transform all objectives.
+.. [2] Eriksson, Poloczek. Scalable Constrained Bayesian Optimization. AISTATS 2021.
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.optimizers import Optimizer
 from hypermap_lite.optimizers.beside import FAR, MOST, telling
 from hypermap_lite.scenario.loader import load_scenario
+from hypermap_lite.surrogates.tails import Tail
 from tests.optimizers.runs import configurations, resumed, scenario_of, two_objectives
 
 Values = dict[str, float]
@@ -57,6 +58,16 @@ def test_a_value_that_infeasible_configurations_share_is_a_placeholder() -> None
 
 def test_a_repeated_configuration_may_repeat_its_values() -> None:
     assert kept(row(2, {"near": 0.2, "far": 12.0}, a=0.5), row(3, {"near": 0.2, "far": 12.0}, a=0.5)) == [2, 3]
+
+
+def test_a_penalty_of_a_feasible_one_makes_no_placeholder_near() -> None:
+    history = build_history(load_scenario(scenario_of()))
+    for trial, near in enumerate([0.0, 1.0, 1e5]):
+        history.append(row(trial, {"near": near, "far": 10.0 + trial}, state=State.COMPLETED))
+    history.extend([row(3, {"near": -2e4, "far": 11.0}), row(4, {"near": 1.5, "far": 11.5})])
+    tail = Tail(limit=1.0, spread=1.0, highest=1e5, is_double=True)
+    found = telling(list(history), history.objectives, (tail, None))
+    assert [e.suggestion.trial for e in found] == [4]
 
 
 def test_the_last_ones_are_kept_of_many() -> None:

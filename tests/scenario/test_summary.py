@@ -88,6 +88,12 @@ def test_the_feasibility_has_a_line_and_a_part_in_the_method() -> None:
     assert "feasib" not in page()
 
 
+def test_compressed_tails_have_a_line() -> None:
+    assert "values far beyond those that count, such as penalties, are compressed for the model" in page()
+    for surrogate in ({"compress_tails": False}, "random_forest"):
+        assert "compress" not in page(surrogate=surrogate)
+
+
 def test_a_search_without_a_model_names_no_acquisition() -> None:
     text = page(optimizer="random_search")
     assert "evaluations 9 to 50: random_search" in text

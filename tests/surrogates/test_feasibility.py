@@ -63,6 +63,18 @@ def test_infeasible_points_alone_lower_the_probability_around_them_most(n) -> No
     assert corner < inside
 
 
+@pytest.mark.parametrize("seed", [1, 2, 5])
+def test_a_search_among_infeasible_points_alone_looks_between_them(seed) -> None:
+    X = np.random.default_rng(seed).random((12, 2))
+    candidates = np.random.default_rng(9).random((2048, 2))
+    for _ in range(30):
+        posterior = ProbitProcess().fit(X, np.zeros(len(X), dtype=bool), is_ordered=ORDERED)
+        score = posterior.log_probability(candidates) + posterior.log_novelty(candidates)
+        best = candidates[score.argmax()]
+        assert np.linalg.norm(X - best, axis=1).min() > 0.08
+        X = np.vstack([X, best])
+
+
 def test_feasible_points_alone_raise_it() -> None:
     posterior = ProbitProcess().fit(np.array([[0.3, 0.3]]), np.array([True]), is_ordered=ORDERED)
     near, far = np.exp(posterior.log_probability(np.array([[0.3, 0.3], [1.0, 1.0]])))
