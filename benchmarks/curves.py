@@ -30,16 +30,18 @@ LINES: Mapping[str, tuple[str, Any]] = {
 }
 """Colour of the package and dashes of the algorithm."""
 
-SPARE_COLOURS = (style.COLOURS[0], *style.COLOURS[2:])
+SPARE_COLOURS = (*style.COLOURS[2:], style.COLOURS[0])
 SMALLEST_GAP = 1e-4
 COLUMNS, PANEL, LEGEND_HEIGHT = 3, (3.9, 3.1), 1.2
 """Panels side by side at most, width and height of each, and height for title and legend [inch]."""
 
 
-def spare_line(index: int) -> tuple[str, Any]:
-    """Return colour and dashes of a variant, by its place in the list."""
-    dashes = (SOLID, DASHED, DOTTED)[index // len(SPARE_COLOURS) % 3]
-    return SPARE_COLOURS[index % len(SPARE_COLOURS)], dashes
+def lines_of(methods: Sequence[str], known: Mapping[str, tuple[str, Any]]) -> dict[str, tuple[str, Any]]:
+    """Return colour and dashes of each method, known ones or, for variants, those that are left, in their order."""
+    found = {method: known[method] for method in methods if method in known}
+    spare = ((colour, dashes) for dashes in (SOLID, DASHED, DOTTED) for colour in SPARE_COLOURS)
+    free = (line for line in spare if line not in found.values())
+    return {method: found.get(method) or next(free) for method in methods}
 
 
 def traces_of(rows: Sequence[Mapping[str, Any]], problem: str, method: str) -> FloatArray:
@@ -79,7 +81,7 @@ def draw(
     title, file
         Of the picture.
     lines
-        Colour and dashes of methods; those of others follow from their places.
+        Colour and dashes of methods; others get what these leave. The first method is drawn on top.
     """
     shown = [problem for problem in problems if any(row["problem"] == problem for row in rows)]
     n_columns = max(min(COLUMNS, len(shown)), 1)
@@ -87,17 +89,17 @@ def draw(
     with style.house_style():
         figure = style.new_figure(PANEL[0] * n_columns, PANEL[1] * n_rows + LEGEND_HEIGHT)
         panels = figure.subplots(n_rows, n_columns, squeeze=False).ravel()
-        drawn = {}
+        drawn, lines = {}, lines_of(methods, lines)
         for axes, problem in zip(panels, shown, strict=False):
             is_regret = PROBLEMS[problem].reference_point is None
             for index, method in enumerate(methods):
                 traces = traces_of(rows, problem, method)
                 if not len(traces):
                     continue
-                colour, dashes = lines.get(method) or spare_line(index)
+                colour, dashes = lines[method]
                 middle, low, high = band(traces, is_regret=is_regret)
                 evaluations = np.arange(1, len(middle) + 1)
-                axes.plot(evaluations, middle, color=colour, linestyle=dashes, linewidth=1.8)
+                axes.plot(evaluations, middle, color=colour, linestyle=dashes, linewidth=1.8, zorder=3 - index / 100)
                 axes.fill_between(evaluations, low, high, color=colour, alpha=0.12, linewidth=0)
                 drawn[method] = style.legend_entry(method, colour, line=dashes)
             axes.set_yscale("log")
