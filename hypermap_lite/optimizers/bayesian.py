@@ -102,6 +102,12 @@ class BayesianOptimizer(Optimizer):
         """Return what predicts the objectives as they are reported."""
         return AsReported(posterior=self.posterior(), tails=self._models.tails())
 
+    def set_aside(self) -> set[int]:
+        """Return the trials of which the surrogate takes an objective for an outlier."""
+        outliers = self.posterior().outliers()
+        rows = () if outliers is None else np.flatnonzero(outliers.any(axis=1))
+        return {self.history.completed[row].trial for row in rows}
+
     def has_model(self, n: int | None = None) -> bool:
         """Tell whether the first n rows, all by default, are enough for a model: in what the surrogate is fitted to."""
         return self._models.n_observed(n) >= MIN_COMPLETED

@@ -20,6 +20,7 @@ from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.surrogates.base import Posterior, Surrogate
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
+from hypermap_lite.surrogates.reported import AsReported
 from hypermap_lite.surrogates.tails import Tails, compress, slopes
 from hypermap_lite.typing import FloatArray
 
@@ -61,7 +62,7 @@ class Models:
         self._seed = seed
         self._warm_starts: dict[int, Any] = {}
         self._tails: dict[int, Tails] = {}
-        self._announced: set[str] = set()
+        self._announced: set[object] = set()
         self._posterior_of: tuple[tuple[int, ...], Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
 
@@ -145,7 +146,28 @@ class Models:
         key = (rows, *(row.suggestion.trial for row in beside))
         if self._posterior_of is None or self._posterior_of[0] != key:
             self._posterior_of = (key, self._posterior_after(n, beside))
+            self._announce_outliers(self._posterior_of[1])
         return self._posterior_of[1]
+
+    def _announce_outliers(self, posterior: Posterior) -> None:
+        """Log, once per evaluation and objective, that it is set aside."""
+        outliers = posterior.outliers()
+        for row, k in () if outliers is None else np.argwhere(outliers):
+            evaluation, objective = self._history.completed[row], self._history.objectives[k]
+            if (evaluation.trial, objective.name) not in self._announced:
+                self._announced.add((evaluation.trial, objective.name))
+                prediction = AsReported(posterior=posterior, tails=self.tails()).predict(
+                    self._history.space.encode([evaluation.configuration])
+                )
+                logger.info(
+                    "trial %d: %s is %.4g, where the other evaluations foretell %.4g +- %.2g; the model sets it aside"
+                    " until one near it is as bad",
+                    evaluation.trial,
+                    objective.name,
+                    evaluation.values[objective.name],
+                    objective.sign * prediction.mean[0, k],
+                    prediction.std[0, k],
+                )
 
     def _beside(self, n: int) -> list[Evaluation]:
         """Return what else the surrogate learns from among the first n rows: infeasible evaluations."""
@@ -205,11 +227,11 @@ class Models:
         for k in () if growth is None else milestones(n, growth):
             if k not in self._warm_starts:
                 first = compress(self._history.Y()[:k], self._tails_at(k))
-                self._warm_starts[k] = self._fit_from(X[:k], first, start, anew=True).hyperparameters
+                self._warm_starts[k] = self._fit_from(X[:k], first, start, anew=True).start
             start = self._warm_starts[k]
         posterior = self._fit_from(X, Y, start, beside=beside, anew=is_milestone(n, growth))
         if is_milestone(n, growth) and not len(beside[0]):
-            self._warm_starts[n] = posterior.hyperparameters  # what a later call would work out again
+            self._warm_starts[n] = posterior.start  # what a later call would work out again
         return posterior
 
     def _fit_samples(self, n: int, beside: tuple[FloatArray, FloatArray]) -> Posterior:
@@ -225,7 +247,7 @@ class Models:
                 first = self._history.samples(ends[k - 1])
                 Y, noise_variance = compressed(first, self.tails(ends[k - 1]))
                 fitted = self._fit_from(first.X, Y, start, noise_variance, anew=True)
-                self._warm_starts[k] = fitted.hyperparameters
+                self._warm_starts[k] = fitted.start
             start = self._warm_starts[k]
         anew = is_milestone(len(samples.X), growth)
         Y, noise_variance = compressed(samples, self.tails(n))

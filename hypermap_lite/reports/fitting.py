@@ -15,7 +15,13 @@ from hypermap_lite.surrogates.base import Predictor
 
 
 def fitted(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> Predictor:
-    """Return the scenario's surrogate, fitted to a history as Bayesian optimization would, whatever the optimizer.
+    """Return what the scenario's surrogate predicts, fitted to a history; see `bayesian_of`."""
+    with single_threaded():
+        return bayesian_of(scenario, history, optimizer).predictor()
+
+
+def bayesian_of(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> BayesianOptimizer:
+    """Return what fits the scenario's surrogate to a history as Bayesian optimization would, whatever the optimizer.
 
     Parameters
     ----------
@@ -38,5 +44,4 @@ def fitted(scenario: Scenario, history: History, optimizer: Optimizer | None = N
         assert isinstance(optimizer, BayesianOptimizer)
     if not optimizer.has_model():
         raise UsageError("the completed evaluations are of too few configurations that did not fail when confirmed")
-    with single_threaded():
-        return optimizer.predictor()
+    return optimizer

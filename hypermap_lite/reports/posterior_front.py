@@ -11,11 +11,11 @@ from hypermap_lite.errors import UsageError
 from hypermap_lite.evaluation.outcome import Evaluation
 from hypermap_lite.history.csv_format import format_configuration, format_number, format_record
 from hypermap_lite.history.history import History
-from hypermap_lite.history.pooling import pooled
+from hypermap_lite.history.pooling import key_of, pooled
 from hypermap_lite.objectives import Objective
 from hypermap_lite.optimizers.base import Optimizer, single_threaded
 from hypermap_lite.pareto.dominance import non_dominated
-from hypermap_lite.reports.fitting import fitted
+from hypermap_lite.reports.fitting import bayesian_of
 from hypermap_lite.reports.tables import align, show
 from hypermap_lite.scenario.model import Scenario
 from hypermap_lite.space.search_space import SearchSpace
@@ -94,7 +94,8 @@ class PosteriorFront:
 def posterior_front(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> PosteriorFront:
     """Return which evaluated configurations are best by the surrogate, which noise does not flatter.
 
-    Only configurations that were evaluated, and are feasible, are considered: of others nobody knows.
+    Only configurations that were evaluated, and are feasible, are considered: of others nobody knows. Nor does anybody
+    of those whose evaluations are all set aside as outliers.
 
     Parameters
     ----------
@@ -108,13 +109,16 @@ def posterior_front(scenario: Scenario, history: History, optimizer: Optimizer |
     UsageError
         If there are too few evaluations for a model.
     """
-    posterior = fitted(scenario, history, optimizer)
+    bayesian = bayesian_of(scenario, history, optimizer)
     candidates = [e for e in pooled(history) if e.is_completed]
     if not candidates:
         raise UsageError("no evaluated configuration is left: the confirmation of each one failed")
-    X = history.space.encode([e.configuration for e in candidates])
     with single_threaded():
-        prediction = posterior.predict(X)
+        set_aside = bayesian.set_aside()
+        seen = {key_of(e.configuration) for e in history.completed if e.trial not in set_aside}
+        candidates = [e for e in candidates if key_of(e.configuration) in seen] or candidates
+        X = history.space.encode([e.configuration for e in candidates])
+        prediction = bayesian.predictor().predict(X)
     mean, std = prediction.mean, prediction.std
     chosen = np.flatnonzero(non_dominated(mean) & history.space.unseen(X, ()))
     chosen = chosen[np.argsort(mean[chosen, 0], kind="stable")]

@@ -28,6 +28,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "restart": True,
             "learn_infeasible": False,
             "compress_tails": False,
+            "ignore_outliers": False,
         },
         "maximizer": {"type": "multistart_gradient", "smooth_levels": 0, "joint_tolerance": 0.0},
         "acquisition": {

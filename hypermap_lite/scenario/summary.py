@@ -26,7 +26,7 @@ CARE = ("prior_free", "safeguard", "make_up")
 UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
-SAID_IN_WORDS = ("compress_tails", "learn_infeasible")
+SAID_IN_WORDS = ("compress_tails", "ignore_outliers", "learn_infeasible")
 """Options that have a sentence of their own."""
 
 
@@ -174,7 +174,16 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append("objective values of infeasible evaluations inform the model, unless they look like placeholders")
     if scenario.surrogate.options.get("compress_tails"):
         lines.append("values far beyond those that count, such as penalties, are compressed for the model")
+    if _ignores_outliers(scenario.surrogate.options):
+        lines.append("an evaluation far worse than the others foretell is set aside until one near it is as bad")
     return [*lines, _prior_use(scenario)]
+
+
+def _ignores_outliers(surrogate: Mapping[str, Any]) -> bool:
+    """Tell whether a surrogate with these options has outliers: not one that knows its noise."""
+    return bool(
+        surrogate.get("ignore_outliers") and surrogate.get("noise") and not surrogate.get("noise_from_replicates")
+    )
 
 
 def _trade_offs(scenario: Scenario) -> str:

@@ -94,8 +94,8 @@ class Posterior(Predictor, Protocol):
     """What is known of m objectives after n evaluations. Immutable."""
 
     @property
-    def hyperparameters(self) -> Any:
-        """What a later fit may start from; None if there is nothing of the kind."""
+    def start(self) -> Any:
+        """What a fit to more evaluations may start from; None if there is nothing of the kind."""
         ...
 
     @property
@@ -107,6 +107,13 @@ class Posterior(Predictor, Protocol):
         """Return which share of each objective's variance predictions explain that leave each evaluation out.
 
         Shape (m,), at most 1; with 0 or less nothing is known of an objective but its mean. None if that is not known.
+        """
+        ...
+
+    def outliers(self) -> BoolArray | None:
+        """Return which objectives of the n evaluations are set aside as outliers, shape (n, m).
+
+        Nothing is learnt from these. None if no evaluation ever is.
         """
         ...
 
@@ -194,7 +201,7 @@ class Surrogate(Protocol):
         rng
             Source of all randomness.
         start
-            `hyperparameters` of an earlier posterior to start from.
+            `start` of an earlier posterior, of the first of these evaluations.
         anew
             Whether to start from what is likely before any data, too, for an earlier posterior may have gone astray.
         permutations

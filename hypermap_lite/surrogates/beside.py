@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, MarginalLikelihood, fit_hyperparameters
-from hypermap_lite.surrogates.offsets import Offsets
-from hypermap_lite.surrogates.process import Process, Standardized
+from hypermap_lite.surrogates.fitted import Fitted
+from hypermap_lite.surrogates.marginal_likelihood import MarginalLikelihood, fit_hyperparameters
+from hypermap_lite.surrogates.offsets import SAYS_NOTHING, Offsets
 from hypermap_lite.typing import FloatArray
 
 SHARED: Final = 1.0
@@ -31,31 +31,6 @@ OWN: Final = (0.0, 0.01, 0.1)
 
 NONSENSE: Final = (0.3, 1.0, 3.0, 10.0, 30.0)
 """Variances of such outputs if they have nothing to do with the objective."""
-
-SAYS_NOTHING: Final = 1e6
-"""Variance of an offset with which an output says nothing."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fitted:
-    """One objective's outputs, and the hyperparameters that are likely by them."""
-
-    output: Standardized
-    likelihood: MarginalLikelihood
-    hyperparameters: Hyperparameters
-
-    def process(self) -> Process:
-        """Return the process given the outputs."""
-        given = self.likelihood
-        return Process.condition(
-            given.X,
-            self.output,
-            self.hyperparameters,
-            given.is_ordered,
-            given.permutations,
-            given.known_noise,
-            given.offsets,
-        )
 
 
 def with_beside(
@@ -94,13 +69,18 @@ def _learned(alone: Fitted, whole: Fitted, *, is_exact: bool) -> tuple[Fitted, b
     """
     n, h = len(alone.output.values), alone.hyperparameters
     is_beside = np.arange(len(whole.output.values)) >= n
-    options = [replace(whole.likelihood, offsets=Offsets(is_beside, SHARED, own)) for own in OWN]
+    so_far = np.zeros(n) if alone.likelihood.offsets is None else alone.likelihood.offsets.own
+
+    def off_by(shared: float, own: float) -> MarginalLikelihood:
+        every = np.append(so_far, np.full(len(is_beside) - n, own))
+        return replace(whole.likelihood, offsets=Offsets(is_beside, shared, every))
+
+    options = [off_by(SHARED, own) for own in OWN]
     likely = min(options, key=lambda option: option(h.to_log())[0])
     fitted = fit_hyperparameters(likely, [h], is_exact=is_exact)
     if likely(fitted.to_log())[0] < alone.likelihood(h.to_log())[0] + loss_of_nonsense(whole.output.values[n:]):
         return replace(whole, likelihood=likely, hyperparameters=fitted), True
-    nothing = replace(whole.likelihood, offsets=Offsets(is_beside, 0.0, SAYS_NOTHING))
-    return replace(whole, likelihood=nothing), False
+    return replace(whole, likelihood=off_by(0.0, SAYS_NOTHING)), False
 
 
 def loss_of_nonsense(y: FloatArray) -> float:

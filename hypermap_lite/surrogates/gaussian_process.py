@@ -20,7 +20,8 @@ from hypermap_lite.surrogates.base import (
     Prediction,
     as_prediction,
 )
-from hypermap_lite.surrogates.beside import Fitted, with_beside
+from hypermap_lite.surrogates.beside import with_beside
+from hypermap_lite.surrogates.fitted import Fitted
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import (
     REJECTED,
@@ -29,6 +30,7 @@ from hypermap_lite.surrogates.marginal_likelihood import (
     MarginalLikelihood,
     fit_hyperparameters,
 )
+from hypermap_lite.surrogates.outliers import fitted_without_outliers
 from hypermap_lite.surrogates.paths import Path
 from hypermap_lite.surrogates.process import Process, ProcessField, Standardized
 from hypermap_lite.surrogates.tails import FEW, MARGIN, Tails, likely_tail
@@ -81,6 +83,9 @@ class GaussianProcess:
 
     compress_tails: bool = True
     """Whether values far beyond those that count are compressed where that makes all values much likelier."""
+
+    ignore_outliers: bool = True
+    """Whether evaluations that are far worse than the others foretell are set aside, if the noise is learned."""
 
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
@@ -142,7 +147,7 @@ class GaussianProcess:
         *,
         is_ordered: BoolArray,
         rng: Rng,
-        start: Sequence[Hyperparameters] | None = None,
+        start: Sequence[Start] | None = None,
         anew: bool = False,
         permutations: Permutations = NO_PERMUTATIONS,
         noise_variance: FloatArray | None = None,
@@ -158,16 +163,30 @@ class GaussianProcess:
             output = Standardized.of(y)
             known = None if noise_variance is None or not self.noise else output.noise(noise_variance[:n, k])
             likelihood = MarginalLikelihood(X[:n], output.values, is_ordered, prior, permutations, known)
-            starts = [] if start is None else [start[k]]
+            starts = [] if start is None else [start[k].hyperparameters]
             if start is None or anew or self.restart:
                 starts.append(prior.mode())
-            best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
-            fits = [*fits, Fitted(output=output, likelihood=likelihood, hyperparameters=best)]
+            if self.ignore_outliers and self.noise and not self.noise_from_replicates:
+                before = () if start is None else start[k].outliers
+                fit = fitted_without_outliers(likelihood, y, starts, before, is_exact=self.restart)
+            else:
+                best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
+                fit = Fitted(output=output, likelihood=likelihood, hyperparameters=best)
+            fits = [*fits, fit]
         if n_beside:
             noise_beside = None if noise_variance is None else noise_variance[n:]
             fits = with_beside(fits, X[n:], Y[n:], noise_beside, is_exact=self.restart)
         processes = tuple(fit.process() for fit in fits)
         return GaussianProcessPosterior(processes=processes, may_be_best=np.arange(len(processes[0].X)) < n)
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What a fit to more evaluations may start from, of one objective."""
+
+    hyperparameters: Hyperparameters
+    outliers: tuple[int, ...]
+    """Which of the evaluations are set aside."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -185,6 +204,12 @@ class GaussianProcessPosterior:
         return tuple(p.hyperparameters for p in self.processes)
 
     @property
+    def start(self) -> tuple[Start, ...]:
+        """What a fit to more evaluations may start from, by objective."""
+        outliers = [tuple(np.flatnonzero(column).tolist()) for column in self.outliers().T]
+        return tuple(map(Start, self.hyperparameters, outliers))
+
+    @property
     def is_differentiable(self) -> bool:
         """True: all fields carry gradients."""
         return True
@@ -192,6 +217,12 @@ class GaussianProcessPosterior:
     def explained(self) -> FloatArray:
         """Return which share of each objective's variance is explained by the others' evaluations, shape (m,)."""
         return np.array([process.explained(self.may_be_best) for process in self.processes])
+
+    def outliers(self) -> BoolArray:
+        """Return which outputs of the n evaluations that count are set aside as outliers, shape (n, m)."""
+        nothing = np.zeros(len(self.may_be_best), dtype=bool)
+        set_aside = [nothing if p.offsets is None else ~p.offsets.says_something for p in self.processes]
+        return np.column_stack(set_aside)[self.may_be_best]
 
     def predict(self, X: FloatArray) -> Prediction:
         """Predict the noise-free objectives at n points, shape (n, d)."""

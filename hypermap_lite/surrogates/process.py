@@ -42,6 +42,14 @@ class Standardized:
     scale: float
 
     @classmethod
+    def without(cls, y: FloatArray, is_outlier: BoolArray) -> Standardized:
+        """Standardize n outputs by those that are no outliers; these have the value 0."""
+        others = cls.of(y[~is_outlier])
+        values = np.zeros(len(y))
+        values[~is_outlier] = others.values
+        return replace(others, values=values)
+
+    @classmethod
     def of(cls, y: FloatArray) -> Standardized:
         """Standardize n outputs, at most 1e150 in size; constant ones, and next to zero ones, keep scale 1."""
         magnitude = float(np.abs(y).max())
@@ -124,17 +132,11 @@ class Process:
         alpha = solve_lower(L, solve_lower(L, residual), transposed=True)
         return cls(X, output, h, kernel, mean, L, alpha, known_noise, offsets)
 
-    def explained(self, counts: BoolArray) -> float:
-        """Return which share of its outputs' variance the process explains if it predicts each from all others.
+    def left_out(self) -> tuple[FloatArray, FloatArray]:
+        """Return how far each output is from what all others predict of it, and the std of that, both shape (n,).
 
         In closed form, with the mean unknown and the hyperparameters of all outputs [1]_, which have seen the output
-        left out: the share is too large by what they owe to it, the more so the more axes there are. At most 1; where
-        it is 0 or less, the mean of the others predicts an output as well. 1 if the outputs are equal.
-
-        Parameters
-        ----------
-        counts
-            Which of the n outputs are to be explained, shape (n,), at least two.
+        left out.
 
         References
         ----------
@@ -143,11 +145,28 @@ class Process:
         inverse = inverse_from_cholesky(self.L)
         pull = inverse.sum(axis=0)
         free_of_mean = inverse - np.outer(pull, pull) / pull.sum()
+        precision = np.diag(free_of_mean)
+        return (free_of_mean @ self.output.values) / precision, 1 / np.sqrt(precision)
+
+    def explained(self, counts: BoolArray) -> float:
+        """Return which share of its outputs' variance the process explains if it predicts each from all others.
+
+        The share is too large by what the hyperparameters owe to the output that is `left_out`, the more so the more
+        axes there are. At most 1; where it is 0 or less, the mean of the others predicts an output as well. 1 if the
+        outputs are equal. Outputs that say nothing are not asked for.
+
+        Parameters
+        ----------
+        counts
+            Which of the n outputs are to be explained, shape (n,), at least two.
+        """
+        if self.offsets is not None:
+            counts = counts & self.offsets.says_something
         y, n = self.output.values[counts], int(counts.sum())
         by_mean = (y - y.mean()) * n / (n - 1)
         if not by_mean.any():
             return 1.0
-        by_process = (free_of_mean @ self.output.values)[counts] / np.diag(free_of_mean)[counts]
+        by_process = self.left_out()[0][counts]
         return float(1.0 - (by_process @ by_process) / (by_mean @ by_mean))
 
     def field_given(self, base: FloatArray, L: FloatArray, weights: FloatArray) -> ProcessField:

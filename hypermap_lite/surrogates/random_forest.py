@@ -215,7 +215,7 @@ class ForestPosterior:
     permutations: Permutations = field(default_factory=dict)
 
     @property
-    def hyperparameters(self) -> None:
+    def start(self) -> None:
         """None: a forest is grown afresh."""
         return
 
@@ -223,6 +223,10 @@ class ForestPosterior:
     def is_differentiable(self) -> bool:
         """False: a forest is piecewise constant."""
         return False
+
+    def outliers(self) -> None:
+        """None: a forest does not ask whether the others foretell an evaluation."""
+        return
 
     def explained(self) -> None:
         """None: that would take as many forests as there are evaluations."""

@@ -206,3 +206,66 @@ def test_where_penalties_are_compressed_the_best_is_found() -> None:
             )
             found.append(min(e.values["y"] for e in run(scenario, 30, function=penalized).history))
     assert np.median(best[True]) < 1e-5 < np.median(best[False])
+
+
+def valley(configuration: Configuration) -> dict[str, float]:
+    a, b = float(configuration["a"]), float(configuration["b"]) / 10 + 0.5
+    return {"y": -((a - 0.3) ** 2) - 2 * (b - 0.35 - 0.3 * a) ** 2}
+
+
+def with_failures(n: int, *trials: int) -> list[Evaluation]:
+    """Return evaluations of the valley, which is to be maximized, where some trials fail without a reason."""
+    rows = rows_of(valley, n)
+    for trial in trials:
+        rows[trial] = replace(rows[trial], values={"y": -50.0})
+    return rows
+
+
+MAXIMIZED = {"objectives": [{"name": "y", "goal": "maximize"}]}
+
+
+def test_an_evaluation_is_set_aside_with_a_line_of_its_own_in_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    optimizer = resumed(scenario_of(**MAXIMIZED), with_failures(30, 12, 20))
+    assert isinstance(optimizer, BayesianOptimizer)
+    with caplog.at_level("INFO"):
+        assert optimizer.set_aside() == {12, 20}
+        optimizer.tell([evaluate(suggestion, valley) for suggestion in optimizer.ask(1)])
+        assert optimizer.set_aside() == {12, 20}
+    lines = [record.message for record in caplog.records if "sets it aside" in record.message]
+    assert len(lines) == 2
+    truth = rows_of(valley, 30)[12].values["y"]
+    assert lines[0].startswith("trial 12: y is -50, where the other evaluations foretell ")
+    assert float(lines[0].split("foretell ")[1].split()[0]) == pytest.approx(truth, abs=0.05)
+
+
+@pytest.mark.parametrize("surrogate", [{"ignore_outliers": False}, {"noise": False}, "random_forest"])
+def test_none_is_set_aside_where_that_is_not_asked_for(surrogate: Any) -> None:
+    optimizer = resumed(scenario_of(**MAXIMIZED, surrogate=surrogate), with_failures(30, 12))
+    assert isinstance(optimizer, BayesianOptimizer)
+    assert optimizer.set_aside() == set()
+
+
+def test_what_is_set_aside_does_not_depend_on_when_it_was_asked_for() -> None:
+    rows = with_failures(40, 9, 12, 30)
+    at_once, step_by_step = (resumed(scenario_of(**MAXIMIZED), rows[:k]) for k in (40, 10))
+    for row in rows[10:]:
+        step_by_step.posterior()
+        step_by_step.history.append(row)
+    assert at_once.set_aside() == step_by_step.set_aside() == {9, 12, 30}
+    X = at_once.history.X()
+    assert np.array_equal(at_once.posterior().predict(X).mean, step_by_step.posterior().predict(X).mean)
+
+
+def test_one_failure_in_ten_does_not_keep_the_search_from_the_optimum() -> None:
+    best: dict[bool, list[float]] = {True: [], False: []}
+    for ignores, found in best.items():
+        for seed in range(3):
+            luck = np.random.default_rng(seed)
+            scenario = scenario_of(
+                **MAXIMIZED, seed=seed, surrogate={"ignore_outliers": ignores}, budget={"evaluations": 30}
+            )
+            optimizer = run(
+                scenario, 30, function=lambda place, luck=luck: valley(place) if luck.random() > 0.1 else {"y": -50.0}
+            )
+            found.append(max(e.values["y"] for e in optimizer.history))
+    assert np.median(best[False]) < -1e-4 < np.median(best[True])

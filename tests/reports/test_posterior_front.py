@@ -127,6 +127,21 @@ def test_command_says_what_it_needs(tmp_path, capsys, more, problem):
     assert problem in capsys.readouterr().err
 
 
+def test_a_configuration_whose_evaluations_are_set_aside_is_not_on_the_posterior_front():
+    """By what the others foretell it would be; but nobody has seen that."""
+
+    def trials(*extra, failed=True, **changes):
+        scenario = load_scenario({**SCENARIO, "objectives": [{"name": "f"}], **changes})
+        rows = [(i / 15, "design", {"f": (i / 15 - 0.6) ** 2}, 1) for i in range(16)]
+        rows[9] = (0.6, "design", {"f": 7.0 if failed else 0.0}, 1)
+        front = posterior_front(scenario, history_of(scenario, [*rows, *extra]))
+        return [(p.trial, p.observed["f"]) for p in front.predictions]
+
+    assert trials(failed=False) == [(9, 0.0)]
+    assert trials()[0][0] in (8, 10)
+    assert trials((0.6, "confirm", {"f": 0.0}, 1)) == [(9, 3.5)]
+
+
 def test_lucky_draw_is_on_the_observed_front_and_not_on_the_posterior_one():
     scenario = load_scenario(SCENARIO)
     values = {0.48: 10.0, 0.49: 10.0, 0.51: 10.0, 0.52: 10.0, 0.5: 9.9}

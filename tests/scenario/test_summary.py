@@ -94,6 +94,12 @@ def test_compressed_tails_have_a_line() -> None:
         assert "compress" not in page(surrogate=surrogate)
 
 
+def test_outliers_have_a_line() -> None:
+    assert "an evaluation far worse than the others foretell is set aside until one near it is as bad" in page()
+    for surrogate in ({"ignore_outliers": False}, {"noise": False}, {"noise_from_replicates": True}, "random_forest"):
+        assert "set aside" not in page(surrogate=surrogate)
+
+
 def test_a_search_without_a_model_names_no_acquisition() -> None:
     text = page(optimizer="random_search")
     assert "evaluations 9 to 50: random_search" in text

@@ -79,7 +79,7 @@ def test_drawn_functions_are_as_unsure_as_the_predictions() -> None:
         Standardized(np.array([0.0, 0.5, 1.0, 1.2]), 0.0, 1.0),
         Hyperparameters(np.array([0.2, 0.8]), 1.0, 1e-4),
         ORDERED,
-        offsets=Offsets(is_beside, SHARED, 0.0),
+        offsets=Offsets(is_beside, SHARED, np.zeros(4)),
     )
     posterior = GaussianProcessPosterior(processes=(process,), may_be_best=~is_beside)
     Z, rng = process.X[2:], np.random.default_rng(1)
@@ -98,7 +98,8 @@ def test_share_explained_is_that_of_predictions_without_each_output_that_counts(
 
     def process(rows: np.ndarray) -> Process:
         output = Standardized(values[rows], 0.0, 1.0)
-        return Process.condition(X[rows], output, h, ORDERED, offsets=Offsets(is_beside[rows], shared, own))
+        offsets = Offsets(is_beside[rows], shared, own * is_beside[rows])
+        return Process.condition(X[rows], output, h, ORDERED, offsets=offsets)
 
     every = np.arange(len(X))
     left_out = np.array([process(every[every != i]).joint(X[i : i + 1])[0][0] for i in range(n)])
