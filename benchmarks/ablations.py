@@ -2,7 +2,7 @@
 
 A variant is a list of changes to the scenario, as `--set` takes them; each changes one default and leaves the rest.
 `OF_FEASIBILITY` holds those that change nothing without an unknown constraint, `OF_TAILS` those that change next to
-nothing without values far beyond the rest.
+nothing without values far beyond the rest, `OF_OUTLIERS` those that matter where evaluations fail without a reason.
 """
 
 from __future__ import annotations
@@ -31,3 +31,4 @@ OF_FEASIBILITY: Mapping[str, Sequence[str]] = {
     "feasibility to the first power": ("acquisition.feasibility_weighting.exponent=1",),
 }
 OF_TAILS: Mapping[str, Sequence[str]] = {"tails as they are": ("surrogate.compress_tails=false",)}
+OF_OUTLIERS: Mapping[str, Sequence[str]] = {"outliers believed": ("surrogate.ignore_outliers=false",)}

@@ -35,7 +35,8 @@ design of 2 (d + 1) Sobol points. Noise is 10 % of the standard deviation of eac
 Sobol points, and on the emulated tasks the median standard error of an evaluation. CPU and wall-clock seconds of one
 suggestion, fit included: medians over the run, then over the seeds; one thread of linear algebra. Largest hypervolumes
 of VehicleSafety, Penicillin, BraninCurrin (both) and C2-DTLZ2 are published approximations, so a share may pass 1 by a
-little. The best mean of a problem is in bold."""
+little. Of problems called "failing" one evaluation in twenty comes out as bad as can be, whatever its point, and counts
+so. The best mean of a problem is in bold."""
 
 
 class Asked(Protocol):

@@ -23,17 +23,23 @@ SMALLEST_REGRET = 1e-12
 
 
 class BlackBox:
-    """Evaluates a problem; keeps the noise-free values, and gives evaluation number k the same noise in every run."""
+    """Evaluates a problem; keeps the noise-free values, and gives evaluation number k the same noise in every run.
+
+    Of a failure nothing better is known than what came out.
+    """
 
     def __init__(self, problem: Problem, seed: int) -> None:
         self._problem = problem
         self._rng = np.random.default_rng([seed, 1])
+        self._luck = np.random.default_rng([seed, 2])
         self.truths: list[FloatArray] = []
         self.feasible: list[bool] = []
 
     def __call__(self, configuration: Mapping[str, Any]) -> Answered:
         """Return the observation of a configuration."""
         truth, is_feasible = self._problem.evaluate(configuration)
+        if self._luck.random() < self._problem.failures:
+            truth = self._problem.worst
         self.truths.append(truth)
         self.feasible.append(is_feasible)
         noise = self._problem.noise_sd * self._rng.standard_normal(len(truth))

@@ -8,13 +8,14 @@ from dataclasses import replace
 from .base import Problem
 from .constrained import CONSTRAINED
 from .emulated import EMULATED
+from .failing import FAILING
 from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
 from .tails import TAILS
 
-__all__ = ["CONSTRAINED", "EMULATED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS", "Problem"]
+__all__ = ["CONSTRAINED", "EMULATED", "FAILING", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS", "Problem"]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
 
-PROBLEMS: Mapping[str, Problem] = {**SINGLE, **SEVERAL, **CONSTRAINED, **SKILLS, **TAILS}
+PROBLEMS: Mapping[str, Problem] = {**SINGLE, **SEVERAL, **CONSTRAINED, **SKILLS, **TAILS, **FAILING}

@@ -43,6 +43,9 @@ class Problem:
     noise: float = 0.0
     """Standard deviation of the observations, as a share of that of the objective over the box."""
 
+    failures: float = 0.0
+    """Share of the evaluations that fail for no reason of their parameters: they come out as bad as `worst`."""
+
     evaluations: int = 60
 
     @property
@@ -69,9 +72,16 @@ class Problem:
         """
         if not self.noise:
             return np.zeros(len(self.objectives))
+        return np.asarray(self.noise * self._spread().std(axis=0))
+
+    @cached_property
+    def worst(self) -> FloatArray:
+        """Largest value of each objective, shape (m,), at the same points."""
+        return np.asarray(self._spread().max(axis=0))
+
+    def _spread(self) -> FloatArray:
         U = qmc.Sobol(self.dimension, rng=np.random.default_rng(0)).random(SPREAD_POINTS)
-        spread: FloatArray = self.noise * self.function(self.points(U)).std(axis=0)
-        return spread
+        return self.function(self.points(U))
 
     def points(self, U: FloatArray) -> FloatArray:
         """Return the points at places in the unit cube, shape (n, d); levels of a category get equal shares."""

@@ -4,6 +4,7 @@ import csv
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 HOME = str(Path(__file__).parents[2] / "benchmarks")
@@ -55,6 +56,21 @@ def test_share_of_the_hypervolume_grows_up_to_one(compared):
         trace = trace_of(row)
         assert trace == sorted(trace)
         assert 0 < float(row["half"]) <= float(row["final"]) <= 1
+
+
+def test_failures_come_by_chance_and_count_as_what_came_out(benchmark):
+    from one_run import BlackBox
+
+    problem = benchmark.PROBLEMS["branin_currin_failing"]
+    place = problem.configurations(problem.points(np.full((1, 2), 0.3)))[0]
+    boxes = [BlackBox(problem, seed) for seed in range(20)]
+    answers = [[tuple(box(place).values) for _ in range(60)] for box in boxes]
+    is_failure = np.array([[values == tuple(problem.worst) for values in row] for row in answers])
+    truth = tuple(problem.function(problem.points(np.full((1, 2), 0.3)))[0])
+    assert {values for row in answers for values in row} == {truth, tuple(problem.worst)}
+    assert 0.03 < is_failure.mean() < 0.07
+    assert len({tuple(row) for row in is_failure}) == 20
+    assert [tuple(values) for values in boxes[0].truths] == answers[0]
 
 
 def test_model_is_worth_more_than_sampling(compared):
