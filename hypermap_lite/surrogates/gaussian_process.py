@@ -30,7 +30,7 @@ from hypermap_lite.surrogates.marginal_likelihood import (
     MarginalLikelihood,
     fit_hyperparameters,
 )
-from hypermap_lite.surrogates.outliers import fitted_without_outliers
+from hypermap_lite.surrogates.outliers import Start, fitted_without_outliers
 from hypermap_lite.surrogates.paths import Path
 from hypermap_lite.surrogates.process import Process, ProcessField, Standardized
 from hypermap_lite.surrogates.tails import FEW, MARGIN, Tails, likely_tail
@@ -167,7 +167,7 @@ class GaussianProcess:
             if start is None or anew or self.restart:
                 starts.append(prior.mode())
             if self.ignore_outliers and self.noise and not self.noise_from_replicates:
-                before = () if start is None else start[k].outliers
+                before = None if start is None else start[k]
                 fit = fitted_without_outliers(likelihood, y, starts, before, is_exact=self.restart)
             else:
                 best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
@@ -178,15 +178,6 @@ class GaussianProcess:
             fits = with_beside(fits, X[n:], Y[n:], noise_beside, is_exact=self.restart)
         processes = tuple(fit.process() for fit in fits)
         return GaussianProcessPosterior(processes=processes, may_be_best=np.arange(len(processes[0].X)) < n)
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """What a fit to more evaluations may start from, of one objective."""
-
-    hyperparameters: Hyperparameters
-    outliers: tuple[int, ...]
-    """Which of the evaluations are set aside."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -206,8 +197,15 @@ class GaussianProcessPosterior:
     @property
     def start(self) -> tuple[Start, ...]:
         """What a fit to more evaluations may start from, by objective."""
-        outliers = [tuple(np.flatnonzero(column).tolist()) for column in self.outliers().T]
-        return tuple(map(Start, self.hyperparameters, outliers))
+        return tuple(
+            Start(
+                n=len(is_outlier),
+                hyperparameters=process.hyperparameters,
+                scale=process.output.scale,
+                outliers=tuple(np.flatnonzero(is_outlier).tolist()),
+            )
+            for process, is_outlier in zip(self.processes, self.outliers().T, strict=True)
+        )
 
     @property
     def is_differentiable(self) -> bool:

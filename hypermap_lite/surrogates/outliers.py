@@ -10,9 +10,9 @@ times the odds of an outlier; the hyperparameters are fitted anew to what is lef
 by hyperparameters that suit one of them the next is no surprise. So a search begins with those of a fit to fewer
 evaluations, and what would be surprising next, and then next, is tried together, or half of it.
 
-An outlier is alone. One that the others foretell, outliers included, has a reason, such as a cliff that two evaluations
-have fallen off; it counts again [2]_. And only what is worse than expected is ever set aside: what is surprisingly good
-is what a search is for.
+An outlier is alone: its nearest neighbour is not as bad. Once there is such a one, both have a reason, such as a cliff
+that they have fallen off, and count [2]_. And only what is worse than expected is ever set aside: what is surprisingly
+good is what a search is for.
 
 References
 ----------
@@ -31,16 +31,20 @@ from typing import Final
 import numpy as np
 
 from hypermap_lite.surrogates.fitted import Fitted
+from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, MarginalLikelihood, fit_hyperparameters
 from hypermap_lite.surrogates.offsets import SAYS_NOTHING, Offsets
 from hypermap_lite.surrogates.process import Process, Standardized
-from hypermap_lite.typing import BoolArray, FloatArray
+from hypermap_lite.typing import BoolArray, FloatArray, IntArray
 
 RARE: Final = 0.02
 """Share of evaluations that are outliers, as far as is known beforehand."""
 
 SUSPECT: Final = 2.5
 """By how many standard deviations an output is worse than expected before it is looked at."""
+
+GROSS: Final = 5.0
+"""The same where the expectation is that of a fit to fewer outputs, which is too sure of itself."""
 
 MARGIN: Final = 10.0
 """Log of the factor by which outputs must be likelier where more of them are set aside.
@@ -53,20 +57,29 @@ MOST: Final = 0.2
 
 LOG_ODDS: Final = math.log(RARE / (1 - RARE))
 
-FORETOLD: Final = 0.5
-"""An outlier, which is a 1 where other outputs are 0, is alone if its neighbours predict less."""
-
-FEWEST: Final = 8
+FEWEST: Final = 12
 """With fewer outputs none is set aside."""
 
 LOG_SQRT_2_PI_E: Final = 0.5 * math.log(2 * math.pi * math.e)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Start:
+    """What was found of the first n outputs, from which a fit to more may start."""
+
+    n: int
+    hyperparameters: Hyperparameters
+    scale: float
+    """Of the outputs, in whose units the hyperparameters are."""
+
+    outliers: tuple[int, ...]
 
 
 def fitted_without_outliers(
     likelihood: MarginalLikelihood,
     y: FloatArray,
     starts: Sequence[Hyperparameters],
-    before: Sequence[int] = (),
+    before: Start | None = None,
     *,
     is_exact: bool,
 ) -> Fitted:
@@ -81,25 +94,32 @@ def fitted_without_outliers(
     starts
         Of the fit, as of others below that start from the mode of the prior, too.
     before
-        Which of the outputs were outliers among fewer outputs.
+        What a fit to the first of the outputs has found; None if there is none.
     is_exact
         As in `fit_hyperparameters`.
     """
-    found = _Found.fitted(likelihood, y, before, starts, is_exact=is_exact)
+    found = _Found.fitted(likelihood, y, () if before is None else before.outliers, starts, is_exact=is_exact)
     if len(y) < FEWEST:
         return found.fit
-    while (more := _likelier(found)) is not None:
+    found = _without_mistakes(found)
+    while (more := _likelier(found, found.suspects())) is not None:
+        found = more
+    if before is not None and (more := _likelier(found, found.suspects(before))) is not None:
         found = more
     while (fewer := found.with_least_surprising()) is not None and fewer.log_density > found.log_density:
         found = fewer
-    while len(foretold := found.foretold()):
-        found = found.with_outliers(foretold, are_outliers=False)
-    return found.fit
+    return _without_mistakes(found).fit
 
 
-def _likelier(found: _Found) -> _Found | None:
+def _without_mistakes(found: _Found) -> _Found:
+    """Return the same with every outlier back that is better than expected, or not alone."""
+    while mistakes := found.mistakes():
+        found = found.with_outliers(mistakes, are_outliers=False)
+    return found
+
+
+def _likelier(found: _Found, suspects: Sequence[int]) -> _Found | None:
     """Return the same with more outliers, if that is much likelier."""
-    suspects = found.suspects()
     k = len(suspects)
     while k:
         tried = found.with_outliers(suspects[:k], are_outliers=True)
@@ -116,6 +136,7 @@ class _Found:
     fit: Fitted
     is_outlier: BoolArray
     y: FloatArray
+    starts: Sequence[Hyperparameters]
     is_exact: bool
 
     @classmethod
@@ -137,37 +158,54 @@ class _Found:
         likelihood = replace(likelihood, y=output.values, offsets=offsets)
         best = fit_hyperparameters(likelihood, starts, is_exact=is_exact)
         fit = Fitted(output=output, likelihood=likelihood, hyperparameters=best)
-        return cls(fit=fit, is_outlier=is_outlier, y=y, is_exact=is_exact)
-
-    def suspects(self) -> list[int]:
-        """Return outputs that are surprisingly bad, each the most surprising one where those before it are left out."""
-        is_outlier = self.is_outlier.copy()
-        suspects: list[int] = []
-        while is_outlier.sum() + 1 <= MOST * len(is_outlier):
-            likelihood = replace(self.fit.likelihood, offsets=Offsets.of_outliers(is_outlier))
-            distance, std = replace(self.fit, likelihood=likelihood).process().left_out()
-            surprise = np.where(is_outlier, -np.inf, distance / std)
-            worst = int(np.argmax(surprise))
-            if not surprise[worst] >= SUSPECT:
-                break
-            suspects.append(worst)
-            is_outlier[worst] = True
-        return suspects
+        return cls(fit=fit, is_outlier=is_outlier, y=y, starts=starts, is_exact=is_exact)
 
     def with_outliers(self, outputs: Sequence[int], *, are_outliers: bool) -> _Found:
         """Return the same with other outputs taken for outliers, or not."""
-        is_outlier, likelihood = self.is_outlier.copy(), self.fit.likelihood
+        is_outlier = self.is_outlier.copy()
         is_outlier[list(outputs)] = are_outliers
-        starts = [self.fit.hyperparameters, likelihood.prior.mode()]
-        return _Found.fitted(likelihood, self.y, np.flatnonzero(is_outlier).tolist(), starts, is_exact=self.is_exact)
+        outliers = np.flatnonzero(is_outlier).tolist()
+        return _Found.fitted(self.fit.likelihood, self.y, outliers, self.starts, is_exact=self.is_exact)
 
-    def foretold(self) -> list[int]:
-        """Return the outliers of which the others, outliers or not, foretell that they are."""
-        given = self.fit.likelihood
-        marks = Standardized(self.is_outlier.astype(float), 0.0, 1.0)
-        process = Process.condition(given.X, marks, self.fit.hyperparameters, given.is_ordered, given.permutations)
-        distance, _ = process.left_out()
-        return np.flatnonzero(self.is_outlier & (distance <= 1 - FORETOLD)).tolist()
+    def suspects(self, before: Start | None = None) -> list[int]:
+        """Return outputs that are surprisingly bad, each the most surprising one where those before it are left out.
+
+        To hyperparameters that have to explain several of them none may be a surprise; to those of a fit to fewer
+        outputs the new ones are. What is left out leaves the others' precision in closed form. Outputs that are not
+        alone stay in.
+        """
+        is_left, may_be_one, process, enough = ~self.is_outlier, ~self.is_outlier, self._process, SUSPECT
+        scale = self.fit.output.scale
+        if before is not None:
+            may_be_one[: before.n] = False
+            scale, enough = before.scale, GROSS
+            known = replace(self.fit.output, values=self.fit.output.values * (self.fit.output.scale / scale))
+            process = replace(self.fit, output=known, hyperparameters=before.hyperparameters).process()
+        precision, values = process.precision(), process.output.values
+        suspects: list[int] = []
+        while (~is_left).sum() + 1 <= MOST * len(is_left):
+            weight = np.where(is_left, np.diag(precision), 1.0)
+            residual = (precision @ values) / weight
+            surprise = np.where(may_be_one, residual * np.sqrt(weight), -np.inf)
+            worst = int(np.argmax(surprise))
+            if not surprise[worst] >= enough:
+                break
+            may_be_one[worst] = False
+            if self._is_alone(worst, residual[worst] * scale):
+                suspects.append(worst)
+                is_left[worst] = False
+                precision = precision - np.outer(precision[worst], precision[worst]) / precision[worst, worst]
+        return suspects
+
+    def mistakes(self) -> list[int]:
+        """Return the outliers that are none: better than the others foretell, or not alone."""
+        outputs = np.flatnonzero(self.is_outlier).tolist()
+        distances = self._surprises[0].tolist() if outputs else []
+        return [i for i, d in zip(outputs, distances, strict=True) if d <= 0 or not self._is_alone(i, d)]
+
+    def _is_alone(self, output: int, distance: float) -> bool:
+        """Tell whether the nearest neighbour of an output that is too bad by so much is not half as bad."""
+        return bool(self.y[self._nearest[output]] < self.y[output] - distance / 2)
 
     def with_least_surprising(self) -> _Found | None:
         """Return the same with the least surprising outlier back, if it would be likelier as none; None otherwise."""
@@ -175,26 +213,47 @@ class _Found:
         if not len(outputs):
             return None
         distance, std = self._surprises
-        square = np.maximum((distance / std) ** 2, 1.0)
+        square = np.clip(distance / std, 1.0, 1e100) ** 2
         gain = 0.5 * (square - 1 - np.log(square)) + LOG_ODDS  # in log density, of being set aside
         least = int(np.argmin(gain))
         return self.with_outliers(outputs[least : least + 1].tolist(), are_outliers=False) if gain[least] < 0 else None
 
     @cached_property
     def log_density(self) -> float:
-        """Log density of all outputs in their own units, of the hyperparameters, and of which are outliers."""
+        """Log density of all outputs in their own units, of the hyperparameters, and of which are outliers.
+
+        Of outputs that are equal without the outliers it says nothing: their density has no bound.
+        """
         k, scale = int(self.is_outlier.sum()), self.fit.output.scale
         others = -self.fit.likelihood(self.fit.hyperparameters.to_log())[0] - (len(self.y) - k) * math.log(scale)
         if not k:
             return others
+        if not self.fit.output.values.any():
+            return -math.inf
         nothing = -0.5 * math.log(2 * math.pi * SAYS_NOTHING)  # each one's part in the likelihood
         distance = np.maximum(np.abs(self._surprises[0]), np.finfo(float).tiny)
         return others + k * (LOG_ODDS - nothing - LOG_SQRT_2_PI_E) - float(np.log(distance).sum())
 
     @cached_property
+    def _process(self) -> Process:
+        return self.fit.process()
+
+    @cached_property
+    def _nearest(self) -> IntArray:
+        """Which other output is the nearest, shape (n,).
+
+        By the kernel before any data: hyperparameters that explain two outliers together make them neighbours.
+        """
+        given = self.fit.likelihood
+        kernel = MaternHammingKernel(given.prior.mode().lengthscales, given.is_ordered, given.permutations)
+        likeness = kernel(given.X, given.X)
+        np.fill_diagonal(likeness, -np.inf)
+        return np.asarray(likeness.argmax(axis=1))
+
+    @cached_property
     def _surprises(self) -> tuple[FloatArray, FloatArray]:
         """How far the outliers are above what the others predict, and its std, shape (k,), in the outputs' units."""
-        process, output = self.fit.process(), self.fit.output
+        process, output = self._process, self.fit.output
         mean, covariance = process.joint(process.X[self.is_outlier])
         variance = np.diag(covariance) + process.hyperparameters.noise_variance
         return self.y[self.is_outlier] - output.offset - output.scale * mean, output.scale * np.sqrt(variance)

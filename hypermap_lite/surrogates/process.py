@@ -142,11 +142,15 @@ class Process:
         ----------
         .. [1] Dubrule. Cross Validation of Kriging in a Unique Neighborhood. Mathematical Geology, 1983.
         """
-        inverse = inverse_from_cholesky(self.L)
-        pull = inverse.sum(axis=0)
-        free_of_mean = inverse - np.outer(pull, pull) / pull.sum()
+        free_of_mean = self.precision()
         precision = np.diag(free_of_mean)
         return (free_of_mean @ self.output.values) / precision, 1 / np.sqrt(precision)
+
+    def precision(self) -> FloatArray:
+        """Return the inverse covariance of the outputs with the mean unknown, shape (n, n); singular along ones."""
+        inverse = inverse_from_cholesky(self.L)
+        pull = inverse.sum(axis=0)
+        return np.asarray(inverse - np.outer(pull, pull) / pull.sum())
 
     def explained(self, counts: BoolArray) -> float:
         """Return which share of its outputs' variance the process explains if it predicts each from all others.

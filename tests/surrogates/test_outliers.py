@@ -9,7 +9,7 @@ from hypermap_lite.optimizers.models import milestones
 from hypermap_lite.surrogates import GaussianProcess
 from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior
 from hypermap_lite.surrogates.marginal_likelihood import HyperPrior, MarginalLikelihood, fit_hyperparameters
-from hypermap_lite.surrogates.outliers import FEWEST, RARE, fitted_without_outliers
+from hypermap_lite.surrogates.outliers import FEWEST, RARE, Start, fitted_without_outliers
 from hypermap_lite.surrogates.process import Standardized
 
 ORDERED = np.ones(2, dtype=bool)
@@ -26,10 +26,22 @@ def posterior(y: np.ndarray, points: np.ndarray = X, **options: bool) -> Gaussia
     model, start = GaussianProcess(**options), None
     for n in [*milestones(len(points), 1.2), len(points)]:
         rng = np.random.default_rng(0)
-        fitted = model.fit(points[:n], y[:n, None], is_ordered=ORDERED, rng=rng, start=start, anew=n < len(points))
+        fitted = model.fit(
+            points[:n],
+            y[:n, None],
+            is_ordered=np.ones(points.shape[1], dtype=bool),
+            rng=rng,
+            start=start,
+            anew=n < len(points),
+        )
         start = fitted.start
     assert isinstance(fitted, GaussianProcessPosterior)
     return fitted
+
+
+def start(*outliers: int) -> Start:
+    h = HyperPrior.over(ORDERED, {}).mode()
+    return Start(n=25, hyperparameters=h, scale=1.0, outliers=outliers)
 
 
 def spoilt(*rows: int, by: float = 5.0) -> np.ndarray:
@@ -48,13 +60,27 @@ def error(fitted: GaussianProcessPosterior) -> float:
 
 @pytest.mark.parametrize("by", [2.0, 5.0, 1e6])
 def test_failures_without_a_reason_leave_the_model_as_it_would_be_without_them(by: float) -> None:
-    rows = [4, 17, 25]
+    rows = [14, 17, 21]
     told = posterior(spoilt(*rows, by=by))
     assert set_aside(told) == rows
     rest = np.setdiff1d(np.arange(len(X)), rows)
     without = posterior(waves(X)[rest], X[rest])
     assert told.predict(Z).mean == pytest.approx(without.predict(Z).mean, abs=0.02)
     assert error(told) < 0.1 * error(posterior(spoilt(*rows, by=by), ignore_outliers=False))
+
+
+@pytest.mark.parametrize("dimension", [1, 2, 4, 6])
+@pytest.mark.parametrize("power", [1, 2])
+def test_failures_are_found_on_smooth_functions_however_far_the_model_extrapolates(dimension: int, power: int) -> None:
+    found = 0
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        points = rng.random((30, dimension))
+        y = (points**power) @ rng.normal(size=dimension)
+        rows = np.sort(rng.choice(np.arange(12, 30), 2, replace=False)).tolist()
+        y[rows] += 20 * y.std()
+        found += set_aside(posterior(y, points)) == rows
+    assert found >= 5
 
 
 def test_a_failure_with_a_reason_counts_once_there_are_two() -> None:
@@ -68,8 +94,36 @@ def test_a_failure_with_a_reason_counts_once_there_are_two() -> None:
     assert both.predict(place).mean[:, 0] == pytest.approx(failed, rel=0.1)
 
 
+def test_a_failure_next_to_one_that_counts_counts_too() -> None:
+    """As on the edge of a region of failures, whose inner ones foretell each other."""
+    inner = np.array([0.9, 0.9]) + 0.1 * np.random.default_rng(1).random((6, 2))
+    points = np.vstack([inner, X, [[0.88, 0.88]]])
+    y = np.append(np.append(np.full(6, 9.0), waves(X)), 9.0)
+    assert set_aside(posterior(y, points)) == []
+
+
 def test_what_is_surprisingly_good_counts() -> None:
     assert set_aside(posterior(spoilt(4, by=-5))) == []
+
+
+def test_what_turns_out_to_be_good_counts_again() -> None:
+    y = spoilt(4, by=-3)
+    likelihood = MarginalLikelihood(X, Standardized.of(y).values, ORDERED, HyperPrior.over(ORDERED, {}))
+    found = fitted_without_outliers(likelihood, y, [likelihood.prior.mode()], before=start(4), is_exact=True)
+    assert found.likelihood.offsets is None
+
+
+def test_equal_values_foretell_nothing_in_whatever_units() -> None:
+    for by in (1e-9, 1.0, 1e9):
+        y = np.ones(20)
+        y[13] += by
+        assert set_aside(posterior(y, X[:20])) == []
+
+
+def test_values_of_all_sizes_are_met_with_numbers() -> None:
+    y = spoilt(14, by=1e149)
+    y[20] = -1e149
+    assert np.isfinite(posterior(y).predict(Z).mean).all()
 
 
 def test_a_success_among_failures_counts_and_so_do_the_failures() -> None:
@@ -87,15 +141,16 @@ def test_smooth_functions_and_noise_have_no_outliers(seed: int, noise: float) ->
 
 
 def test_what_happens_often_is_no_exception() -> None:
+    """Of twelve failures in thirty the model believes most."""
     rows = np.random.default_rng(0).permutation(30)[:12]
-    assert len(set_aside(posterior(spoilt(*rows.tolist())))) <= 0.2 * 30
+    assert len(set_aside(posterior(spoilt(*rows.tolist())))) <= 2
 
 
 def test_none_among_few_evaluations() -> None:
     y = waves(X)
     y[3] += 100
     assert set_aside(posterior(y[: FEWEST - 1], X[: FEWEST - 1])) == []
-    assert set_aside(posterior(y[:12], X[:12])) == [3]
+    assert set_aside(posterior(y[:16], X[:16])) == [3]
 
 
 def test_none_where_the_noise_is_known_or_there_is_none() -> None:
@@ -154,6 +209,6 @@ def test_what_is_set_aside_is_likelier_as_an_outlier() -> None:
 def test_outliers_that_are_none_any_more_count_again() -> None:
     y = waves(X)
     likelihood = MarginalLikelihood(X, Standardized.of(y).values, ORDERED, HyperPrior.over(ORDERED, {}))
-    found = fitted_without_outliers(likelihood, y, [likelihood.prior.mode()], before=[3, 8], is_exact=True)
+    found = fitted_without_outliers(likelihood, y, [likelihood.prior.mode()], before=start(3, 8), is_exact=True)
     assert found.likelihood.offsets is None
     assert np.array_equal(found.output.values, Standardized.of(y).values)
