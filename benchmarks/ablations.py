@@ -3,6 +3,9 @@
 A variant is a list of changes to the scenario, as `--set` takes them; each changes one default and leaves the rest.
 `OF_FEASIBILITY` holds those that change nothing without an unknown constraint, `OF_TAILS` those that change next to
 nothing without values far beyond the rest, `OF_OUTLIERS` those that matter where evaluations fail without a reason.
+
+The rows of `ABLATIONS` were measured before outliers were set aside, so what they are to be compared with is "outliers
+believed", to the last digit the default of then.
 """
 
 from __future__ import annotations
