@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, MarginalLikelihood
 from hypermap_lite.surrogates.process import Process, Standardized
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Fitted:
     """One objective's outputs, and the hyperparameters that are likely by them."""
 
@@ -16,8 +17,9 @@ class Fitted:
     likelihood: MarginalLikelihood
     hyperparameters: Hyperparameters
 
+    @cached_property
     def process(self) -> Process:
-        """Return the process given the outputs."""
+        """The process given the outputs."""
         given = self.likelihood
         return Process.condition(
             given.X,

@@ -176,7 +176,7 @@ class GaussianProcess:
         if n_beside:
             noise_beside = None if noise_variance is None else noise_variance[n:]
             fits = with_beside(fits, X[n:], Y[n:], noise_beside, is_exact=self.restart)
-        processes = tuple(fit.process() for fit in fits)
+        processes = tuple(fit.process for fit in fits)
         return GaussianProcessPosterior(processes=processes, may_be_best=np.arange(len(processes[0].X)) < n)
 
 

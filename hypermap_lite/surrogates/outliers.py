@@ -34,7 +34,7 @@ from hypermap_lite.surrogates.fitted import Fitted
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters, MarginalLikelihood, fit_hyperparameters
 from hypermap_lite.surrogates.offsets import SAYS_NOTHING, Offsets
-from hypermap_lite.surrogates.process import Process, Standardized
+from hypermap_lite.surrogates.process import Standardized
 from hypermap_lite.typing import BoolArray, FloatArray, IntArray
 
 RARE: Final = 0.02
@@ -174,13 +174,13 @@ class _Found:
         outputs the new ones are. What is left out leaves the others' precision in closed form. Outputs that are not
         alone stay in.
         """
-        is_left, may_be_one, process, enough = ~self.is_outlier, ~self.is_outlier, self._process, SUSPECT
+        is_left, may_be_one, process, enough = ~self.is_outlier, ~self.is_outlier, self.fit.process, SUSPECT
         scale = self.fit.output.scale
         if before is not None:
             may_be_one[: before.n] = False
             scale, enough = before.scale, GROSS
             known = replace(self.fit.output, values=self.fit.output.values * (self.fit.output.scale / scale))
-            process = replace(self.fit, output=known, hyperparameters=before.hyperparameters).process()
+            process = replace(self.fit, output=known, hyperparameters=before.hyperparameters).process
         precision, values = process.precision(), process.output.values
         suspects: list[int] = []
         while (~is_left).sum() + 1 <= MOST * len(is_left):
@@ -235,10 +235,6 @@ class _Found:
         return others + k * (LOG_ODDS - nothing - LOG_SQRT_2_PI_E) - float(np.log(distance).sum())
 
     @cached_property
-    def _process(self) -> Process:
-        return self.fit.process()
-
-    @cached_property
     def _nearest(self) -> IntArray:
         """Which other output is the nearest, shape (n,).
 
@@ -253,7 +249,7 @@ class _Found:
     @cached_property
     def _surprises(self) -> tuple[FloatArray, FloatArray]:
         """How far the outliers are above what the others predict, and its std, shape (k,), in the outputs' units."""
-        process, output = self._process, self.fit.output
+        process, output = self.fit.process, self.fit.output
         mean, covariance = process.joint(process.X[self.is_outlier])
         variance = np.diag(covariance) + process.hyperparameters.noise_variance
         return self.y[self.is_outlier] - output.offset - output.scale * mean, output.scale * np.sqrt(variance)

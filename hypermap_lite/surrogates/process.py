@@ -92,6 +92,9 @@ class Process:
     offsets: Offsets | None = None
     """As in `MarginalLikelihood`."""
 
+    inverse: FloatArray | None = None
+    """Of the covariance of the data, if it has been worked out, shape (n, n)."""
+
     @property
     def noise_variances(self) -> FloatArray:
         """Noise variance of each output, shape (n,)."""
@@ -127,10 +130,11 @@ class Process:
         L = safe_cholesky(K)
         if L is None:
             L = np.eye(len(X)) * 1e6
-        mean = constant_mean(inverse_from_cholesky(L), output.values)
+        inverse = inverse_from_cholesky(L)
+        mean = constant_mean(inverse, output.values)
         residual = output.values - mean
         alpha = solve_lower(L, solve_lower(L, residual), transposed=True)
-        return cls(X, output, h, kernel, mean, L, alpha, known_noise, offsets)
+        return cls(X, output, h, kernel, mean, L, alpha, known_noise, offsets, inverse)
 
     def left_out(self) -> tuple[FloatArray, FloatArray]:
         """Return how far each output is from what all others predict of it, and the std of that, both shape (n,).
@@ -148,7 +152,7 @@ class Process:
 
     def precision(self) -> FloatArray:
         """Return the inverse covariance of the outputs with the mean unknown, shape (n, n); singular along ones."""
-        inverse = inverse_from_cholesky(self.L)
+        inverse = inverse_from_cholesky(self.L) if self.inverse is None else self.inverse
         pull = inverse.sum(axis=0)
         return np.asarray(inverse - np.outer(pull, pull) / pull.sum())
 

@@ -196,7 +196,7 @@ def test_what_is_set_aside_is_likelier_as_an_outlier() -> None:
     found = fitted_without_outliers(likelihood, y, [prior.mode()], is_exact=True)
     others = np.arange(30) != 4
     alone = MarginalLikelihood(X[others], found.output.values[others], ORDERED, prior)
-    mean = found.process().joint(X[4:5])[0][0]
+    mean = found.process.joint(X[4:5])[0][0]
     distance = y[4] - found.output.offset - found.output.scale * mean
     of_outlier = math.log(RARE / (1 - RARE)) - 0.5 * math.log(2 * math.pi * math.e) - math.log(distance)
     of_others = -alone(found.hyperparameters.to_log())[0] - 29 * math.log(found.output.scale)
