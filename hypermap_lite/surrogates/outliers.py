@@ -40,6 +40,8 @@ from hypermap_lite.typing import BoolArray, FloatArray, IntArray
 RARE: Final = 0.02
 """Share of evaluations that are outliers, as far as is known beforehand."""
 
+LOG_ODDS: Final = math.log(RARE / (1 - RARE))
+
 SUSPECT: Final = 2.5
 """By how many standard deviations an output is worse than expected before it is looked at."""
 
@@ -54,8 +56,6 @@ A rough function, as of a skill with cliffs, has many evaluations that seem to b
 
 MOST: Final = 0.2
 """Largest share of outliers. What happens more often is no exception."""
-
-LOG_ODDS: Final = math.log(RARE / (1 - RARE))
 
 FEWEST: Final = 12
 """With fewer outputs none is set aside."""
@@ -92,7 +92,7 @@ def fitted_without_outliers(
     y
         These outputs in their own units, to be minimized, shape (n,).
     starts
-        Of the fit, as of others below that start from the mode of the prior, too.
+        Of the fit, and of those that set outputs aside.
     before
         What a fit to the first of the outputs has found; None if there is none.
     is_exact
@@ -222,7 +222,7 @@ class _Found:
     def log_density(self) -> float:
         """Log density of all outputs in their own units, of the hyperparameters, and of which are outliers.
 
-        Of outputs that are equal without the outliers it says nothing: their density has no bound.
+        Minus infinity where all others are equal: their density has no bound, so nothing could be compared.
         """
         k, scale = int(self.is_outlier.sum()), self.fit.output.scale
         others = -self.fit.likelihood(self.fit.hyperparameters.to_log())[0] - (len(self.y) - k) * math.log(scale)
