@@ -2,10 +2,11 @@
 
 A variant is a list of changes to the scenario, as `--set` takes them; each changes one default and leaves the rest.
 `OF_FEASIBILITY` holds those that change nothing without an unknown constraint, `OF_TAILS` those that change next to
-nothing without values far beyond the rest, `OF_OUTLIERS` those that matter where evaluations fail without a reason.
+nothing without values far beyond the rest, `OF_OUTLIERS` those that matter where evaluations fail without a reason,
+`OF_FAILURES` where they fail with one.
 
-The rows of `ABLATIONS` were measured before outliers were set aside, so what they are to be compared with is "outliers
-believed", to the last digit the default of then.
+The rows of `ABLATIONS` were measured before outliers were set aside and failures told apart, so what they are to be
+compared with is "outliers believed", which is to the last digit the default of then.
 """
 
 from __future__ import annotations
@@ -35,3 +36,4 @@ OF_FEASIBILITY: Mapping[str, Sequence[str]] = {
 }
 OF_TAILS: Mapping[str, Sequence[str]] = {"tails as they are": ("surrogate.compress_tails=false",)}
 OF_OUTLIERS: Mapping[str, Sequence[str]] = {"outliers believed": ("surrogate.ignore_outliers=false",)}
+OF_FAILURES: Mapping[str, Sequence[str]] = {"failures among the rest": ("surrogate.separate_failures=false",)}

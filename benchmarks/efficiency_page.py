@@ -30,13 +30,13 @@ HEADER = ("problem", "method", "seeds", "half", "all", "worst", "CPU s", "wall s
 
 TEXT = """Log10 of the regret of the best point (smaller is better) or, with several objectives, the share of the
 largest hypervolume (larger is better), of the noise-free values of all evaluated points: means ± standard errors over
-the seeds, after half and all of 60 evaluations (40 for Branin), and the worst seed. Everybody begins with the same
-design of 2 (d + 1) Sobol points. Noise is 10 % of the standard deviation of each objective over the box, by 16,384
-Sobol points, and on the emulated tasks the median standard error of an evaluation. CPU and wall-clock seconds of one
-suggestion, fit included: medians over the run, then over the seeds; one thread of linear algebra. Largest hypervolumes
-of VehicleSafety, Penicillin, BraninCurrin (both) and C2-DTLZ2 are published approximations, so a share may pass 1 by a
-little. Of problems called "failing" one evaluation in twenty comes out as bad as can be, whatever its point, and counts
-so. The best mean of a problem is in bold."""
+the seeds, after half and all of 60 evaluations (40 in two dimensions with one objective, 100 from ten parameters on),
+and the worst seed. Everybody begins with the same design of 2 (d + 1) Sobol points. Noise is 10 % of the standard
+deviation of each objective over the box, by 16,384 Sobol points, and on the emulated tasks the median standard error of
+an evaluation. CPU and wall-clock seconds of one suggestion, fit included: medians over the run, then over the seeds;
+one thread of linear algebra. Largest hypervolumes of VehicleSafety, Penicillin, BraninCurrin (both) and C2-DTLZ2 are
+published approximations, so a share may pass 1 by a little. Of problems called "failing" one evaluation in twenty comes
+out as bad as can be, whatever its point, and counts so. The best mean of a problem is in bold."""
 
 
 class Asked(Protocol):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ablations import ABLATIONS, OF_FEASIBILITY, OF_OUTLIERS, OF_TAILS
+from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_OUTLIERS, OF_TAILS
 from contenders import WORKERS, Contender, Ours, Peer, Spread, Task
 
 COMMAND = "#     "
@@ -53,7 +53,7 @@ METHODS: Mapping[str, Method] = {
     "HyperMapper GP": peer("hypermapper", "GP"),
     **{
         name: ours(overrides=changes)
-        for name, changes in {**ABLATIONS, **OF_FEASIBILITY, **OF_TAILS, **OF_OUTLIERS}.items()
+        for name, changes in {**ABLATIONS, **OF_FEASIBILITY, **OF_TAILS, **OF_OUTLIERS, **OF_FAILURES}.items()
     },
 }
 PEERS = tuple(name for name, method in METHODS.items() if method.environment is not None)

@@ -2,8 +2,8 @@
 
     python benchmarks/sample_efficiency.py TABLE [--seeds 10] [--problems NAME,...] [--methods NAME,...]
 
-TABLE is `single`, `several`, `constrained`, `skills`, `tails`, `failing` or `ablation`; `page` only writes the page and
-the pictures again.
+TABLE is `single`, `several`, `constrained`, `skills`, `many`, `tails`, `failing` or `ablation`; `page` only writes the
+page and the pictures again.
 All methods begin with the same design of 2 (d + 1) points of a scrambled Sobol sequence, with the same noise, and go on
 one evaluation at a time, with one thread of linear algebra. Rows are written as they are measured and a case that has
 its row is not run again, so an interrupted benchmark goes on; `--again` forgets the rows of a method whose code has
@@ -25,12 +25,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ablations import ABLATIONS, OF_FEASIBILITY, OF_OUTLIERS, OF_TAILS
+from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_OUTLIERS, OF_TAILS
 from contenders import Contender, Task
 from efficiency_page import write_page
 from methods import DEFAULT, METHODS, PEERS, Method, ours, starter
 from one_run import COLUMNS, KEY, run
-from problems import CONSTRAINED, EMULATED, FAILING, PROBLEMS, SEVERAL, SINGLE, SKILLS, TAILS
+from problems import CONSTRAINED, EMULATED, FAILING, MANY, PROBLEMS, SEVERAL, SINGLE, SKILLS, TAILS
 from reporting import ResultTable
 from threadpoolctl import threadpool_limits
 
@@ -54,16 +54,25 @@ TABLES: Mapping[str, Table] = {
         problems=tuple(CONSTRAINED),
         methods=(*COMPARED, *OF_FEASIBILITY),
     ),
-    "skills": Table(title="Skills: a plateau of failure, and the emulated robot tasks", problems=tuple(SKILLS)),
+    "skills": Table(
+        title="Skills: a plateau of failure, and the emulated robot tasks",
+        problems=tuple(SKILLS),
+        methods=(*COMPARED, *OF_FAILURES),
+    ),
+    "many": Table(
+        title="Ten to twenty parameters, 100 evaluations",
+        problems=tuple(MANY),
+        methods=(*COMPARED, *OF_FAILURES),
+    ),
     "tails": Table(
         title="Values over decades: functions, and penalties for failures",
         problems=tuple(TAILS),
-        methods=(*COMPARED, *OF_TAILS),
+        methods=(*COMPARED, *OF_TAILS, *OF_FAILURES),
     ),
     "failing": Table(
         title="One evaluation in twenty fails for no reason of its parameters",
         problems=tuple(FAILING),
-        methods=(*COMPARED, *OF_OUTLIERS),
+        methods=(*COMPARED, *OF_OUTLIERS, *OF_FAILURES),
     ),
     "ablation": Table(
         title="The default method and its variants, which believe outliers",

@@ -9,13 +9,22 @@ from .base import Problem
 from .constrained import CONSTRAINED
 from .emulated import EMULATED
 from .failing import FAILING
+from .many import MANY
 from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
 from .tails import TAILS
 
-__all__ = ["CONSTRAINED", "EMULATED", "FAILING", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS", "Problem"]
+__all__ = ["CONSTRAINED", "EMULATED", "FAILING", "MANY", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS", "Problem"]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
 
-PROBLEMS: Mapping[str, Problem] = {**SINGLE, **SEVERAL, **CONSTRAINED, **SKILLS, **TAILS, **FAILING}
+PROBLEMS: Mapping[str, Problem] = {
+    **SINGLE,
+    **SEVERAL,
+    **CONSTRAINED,
+    **SKILLS,
+    **TAILS,
+    **FAILING,
+    **MANY,
+}

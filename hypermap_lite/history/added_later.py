@@ -30,5 +30,6 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.surrogate.noise_floor": "1e-06",
     "$.surrogate.noise_tail": "2",
     "$.surrogate.restart": "true",
+    "$.surrogate.separate_failures": "false",
 }
 """Their places, and the values (as JSON) that scenarios without them are taken to have: those that change nothing."""

@@ -23,6 +23,7 @@ from hypermap_lite.maximizers.base import MaximizationProblem, are_apart
 from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.boundary import boundary_factor
+from hypermap_lite.optimizers.failures import SeparateModels
 from hypermap_lite.optimizers.foreseen import foreseen_reference_point, spread_points
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
@@ -88,29 +89,39 @@ class BayesianOptimizer(Optimizer):
         self._budget = budget
         self._batch_size = batch_size
         self._seed = seed
-        self._models = Models(history, method.surrogate, method.feasibility_weighting, seed)
+        self._separate = SeparateModels(history, method.surrogate, method.feasibility_weighting, seed)
         self._guide = Guide(beliefs or (Belief(prior=prior),), method.prior_weighting, history.space, seed)
+
+    @property
+    def _models(self) -> Models:
+        """The models by all that is known; of evaluations that are told apart as failures as of infeasible ones."""
+        return self._separate.after()
 
     def posterior(self) -> Posterior:
         """Return what the surrogate knows after the completed evaluations, of which there must be one.
 
-        Of objectives whose tails are compressed; see `predictor`.
+        Of successes, if failures are told apart, and of objectives whose tails are compressed; see `predictor`.
         """
         return self.fitted()[0]
 
     def predictor(self) -> Predictor:
-        """Return what predicts the objectives as they are reported."""
+        """Return what predicts the objectives as they are reported, where an evaluation succeeds."""
         return AsReported(posterior=self.posterior(), tails=self._models.tails())
 
+    def predictor_of_all(self) -> Predictor:
+        """Return what predicts the objectives as they are reported, with the chance that an evaluation fails."""
+        return self._separate.with_failures(self.predictor())
+
     def set_aside(self) -> set[int]:
-        """Return the trials of which the surrogate takes an objective for an outlier."""
-        outliers = self.posterior().outliers()
+        """Return the trials that fail or would likely do so if repeated, and those with an outlier."""
+        seen, outliers = self._models.history.completed, self.posterior().outliers()
         rows = () if outliers is None else np.flatnonzero(outliers.any(axis=1))
-        return {self.history.completed[row].trial for row in rows}
+        fail = np.flatnonzero(self._separate.fail_likely())
+        return {seen[row].trial for row in rows} | {self.history.completed[row].trial for row in fail}
 
     def has_model(self, n: int | None = None) -> bool:
         """Tell whether the first n rows, all by default, are enough for a model: in what the surrogate is fitted to."""
-        return self._models.n_observed(n) >= MIN_COMPLETED
+        return self._separate.after(n).n_observed(n) >= MIN_COMPLETED
 
     def fitted(self) -> tuple[Posterior, FloatArray]:
         """Return the `posterior`, and the points it was fitted to, shape (n, d)."""
@@ -135,7 +146,7 @@ class BayesianOptimizer(Optimizer):
             return self._with_model(trial, rng, feasibility, guidance)
         if feasibility is not None:
             scorer = self._searching(feasibility, guidance)
-            return self._by_score(scorer, self.history.X(), trial, rng, guidance)
+            return self._by_score(scorer, self._models.history.X(), trial, rng, guidance)
         return self._drawn_by(self._method.fallback, trial, rng)
 
     def _lacks_draws(self, trial: int) -> bool:
@@ -185,9 +196,10 @@ class BayesianOptimizer(Optimizer):
         """Tell whether it is time for a draw: the model has been of no use, and promises none or knows nothing."""
         if draws_at_end(self._suggestions()) >= self._method.escapes:
             return False
-        if self._has_promises() and is_in_the_dark(self.history, self._models.told(), context.posterior):
+        models = self._models
+        if self._has_promises() and is_in_the_dark(models.history, models.told(), context.posterior):
             return True
-        return stands_still(self.history) and (len(self.history.objectives) == 1 or promise < NEXT_TO_NOTHING)
+        return stands_still(models.history) and (len(self.history.objectives) == 1 or promise < NEXT_TO_NOTHING)
 
     def _has_promises(self) -> bool:
         """Tell whether acquisition values promise an improvement of an objective or of the hypervolume.
@@ -269,8 +281,9 @@ class BayesianOptimizer(Optimizer):
         axes, least = self.history.space.is_continuous, self._method.boundary_factor
         if least >= 1 or not self._has_promises() or axes.sum() < FEWEST_CHECKED:
             return scorer
-        mean = context.posterior.predict(self.history.X()).mean
-        factor = boundary_factor(self.history, self._models.told(), mean, least)
+        models = self._models
+        mean = context.posterior.predict(models.history.X()).mean
+        factor = boundary_factor(models.history, models.told(), mean, least)
         return scorer if factor == 1 else BoundaryWeighted(inner=scorer, axes=axes, factor=factor)
 
     def _searching(self, feasibility: FeasibilityPosterior, guidance: Guidance) -> Scorer:
@@ -323,7 +336,7 @@ class BayesianOptimizer(Optimizer):
                 optimistic_ideal(posterior, feasibility, spread_points(self.history.space, rng))
             )
         if reference_point is None and Y.shape[1] > 1 and not self._method.acquisition.is_scalarizing:
-            reference_point = foreseen_reference_point(posterior, feasibility, self.history, rng)
+            reference_point = foreseen_reference_point(posterior, feasibility, self._models.history, rng)
         return AcquisitionContext(
             posterior=posterior,
             X=X,
@@ -365,7 +378,7 @@ class BayesianOptimizer(Optimizer):
             model_budget=max(n_in_all, 1),
             history=list(self.history),
             first=len(self._initial),
-            evidence=self._models.evidence,
+            evidence=lambda n: self._separate.after(n).evidence(n),
         )
 
     def _incumbents(self, context: AcquisitionContext, mean: FloatArray) -> FloatArray:

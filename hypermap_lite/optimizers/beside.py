@@ -18,6 +18,7 @@ from hypermap_lite.history.history import objectives_of
 from hypermap_lite.history.pooling import key_of
 from hypermap_lite.objectives import Objective
 from hypermap_lite.surrogates.tails import Tails, compress
+from hypermap_lite.typing import BoolArray, FloatArray
 
 FAR: Final = 3.0
 """Values farther beyond the feasible ones than so many of their ranges are taken for placeholders."""
@@ -37,14 +38,39 @@ def telling(evaluations: Sequence[Evaluation], objectives: Sequence[Objective], 
     infeasible = [e for e in evaluations if e.state is State.INFEASIBLE and all(o.name in e.values for o in objectives)]
     if not completed or not infeasible:
         return []
-    Y = objectives_of(infeasible, objectives)
+    tells = _tells(infeasible, completed, objectives, tails).all(axis=1)
+    return [infeasible[i] for i in np.flatnonzero(tells)[-MOST:]]
+
+
+def values_of_failures(
+    failed: Sequence[Evaluation],
+    completed: Sequence[Evaluation],
+    objectives: Sequence[Objective],
+    failing: int,
+    tails: Tails = (),
+) -> FloatArray:
+    """Return what k failures report beside n successes, shape (k, m), NaN where it means nothing.
+
+    That is so of the objective, number `failing`, by which they are failures, and of values that would not be believed
+    of an infeasible evaluation; see `telling`. Tails are not compressed.
+    """
+    tells = _tells(failed, completed, objectives, tails)
+    tells[:, failing] = False
+    return np.where(tells, objectives_of(failed, objectives), np.nan)
+
+
+def _tells(
+    beside: Sequence[Evaluation], completed: Sequence[Evaluation], objectives: Sequence[Objective], tails: Tails
+) -> BoolArray:
+    """Tell which objectives of k evaluations beside completed ones are likely to mean something, shape (k, m)."""
+    Y = objectives_of(beside, objectives)
     feasible, known = compress(objectives_of(completed, objectives), tails), compress(Y, tails)
     low, high = feasible.min(axis=0), feasible.max(axis=0)
     reach = FAR * (high - low)
-    is_near = ((low - reach <= known) & (high + reach >= known)).all(axis=1)
+    is_near = (low - reach <= known) & (high + reach >= known)
     seen: dict[tuple[int, float], set[Hashable]] = defaultdict(set)
-    for evaluation, row in zip(infeasible, Y, strict=True):
-        for k, value in enumerate(row.tolist()):
+    for evaluation, row in zip(beside, Y.tolist(), strict=True):
+        for k, value in enumerate(row):
             seen[k, value].add(key_of(evaluation.configuration))
-    is_own = np.array([all(len(seen[k, value]) == 1 for k, value in enumerate(row)) for row in Y.tolist()])
-    return [infeasible[i] for i in np.flatnonzero(is_near & is_own)[-MOST:]]
+    is_own = [[len(seen[k, value]) == 1 for k, value in enumerate(row)] for row in Y.tolist()]
+    return is_near & np.array(is_own, dtype=bool).reshape(is_near.shape)

@@ -67,6 +67,9 @@ class Confirmation:
         candidates = [e for e in pooled(history) if e.is_completed]
         if len(candidates) < FEWEST:
             return None
+        candidates = self._known(history, candidates)
+        if len(candidates) < FEWEST:
+            return None
         variance = self._variance_of_worth(history, candidates, trial)
         under_way = [key_of(s.configuration) for s in in_flight if s.phase == CONFIRM]
         n_coming = np.array([under_way.count(key_of(e.configuration)) for e in candidates])
@@ -79,6 +82,12 @@ class Confirmation:
             phase=CONFIRM,
             acquisition_value=float(np.sqrt(variance[best])),
         )
+
+    def _known(self, history: History, candidates: Sequence[Evaluation]) -> list[Evaluation]:
+        """Return the candidates of which the model knows: not those that it takes for failures."""
+        keys = history.space.keys(history.space.encode([e.configuration for e in candidates]))
+        known = set(history.space.keys(self.posterior()[1]))
+        return [candidate for candidate, key in zip(candidates, keys, strict=True) if key in known]
 
     def _variance_of_worth(self, history: History, candidates: Sequence[Evaluation], trial: int) -> FloatArray:
         """Return the variance of each candidate's worth, in shares of the box up to the reference point, shape (k,)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.history.history import History, Samples, objectives_of
 from hypermap_lite.history.replicate_noise import shrunk_variances
 from hypermap_lite.objectives import reference_point_of, stated_or
-from hypermap_lite.optimizers.beside import telling
+from hypermap_lite.optimizers.beside import MOST, telling, values_of_failures
 from hypermap_lite.optimizers.prior_trust import Evidence
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.dominance import non_dominated
@@ -38,6 +38,17 @@ evaluations in which noise passes for a rough function can otherwise be kept for
 """
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToldApart:
+    """Failures among the infeasible evaluations of a history."""
+
+    objective: int
+    """The one by which they are failures."""
+
+    trials: set[int]
+    """Which they are; it may grow."""
+
+
 class Models:
     """Fits what is asked for once per length of the history.
 
@@ -51,20 +62,36 @@ class Models:
         None learns nothing of the feasibility.
     seed
         Of the scenario.
+    failures
+        Which infeasible evaluations of the history are failures in fact, if there are any.
+    announced
+        What the log has said already; it is added to.
     """
 
     def __init__(
-        self, history: History, surrogate: Surrogate, feasibility_weighting: FeasibilityWeighting | None, seed: int
+        self,
+        history: History,
+        surrogate: Surrogate,
+        feasibility_weighting: FeasibilityWeighting | None,
+        seed: int,
+        failures: ToldApart | None = None,
+        announced: set[object] | None = None,
     ) -> None:
         self._history = history
         self._surrogate = surrogate
         self._feasibility_weighting = feasibility_weighting
         self._seed = seed
+        self._failures = failures
         self._warm_starts: dict[int, Any] = {}
         self._tails: dict[int, Tails] = {}
-        self._announced: set[object] = set()
+        self._announced = set() if announced is None else announced
         self._posterior_of: tuple[tuple[int, ...], Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
+
+    @property
+    def history(self) -> History:
+        """The evaluations."""
+        return self._history
 
     def observed(self, n: int | None = None) -> tuple[FloatArray, FloatArray]:
         """Return what the surrogate is fitted to: the completed evaluations, or one row per distinct configuration.
@@ -170,15 +197,31 @@ class Models:
                 )
 
     def _beside(self, n: int) -> list[Evaluation]:
-        """Return what else the surrogate learns from among the first n rows: infeasible evaluations."""
+        """Return what else the surrogate learns from among the first n rows: infeasible evaluations, then failures."""
         if not self._surrogate.learn_infeasible:
             return []
-        return telling(list(self._history)[:n], self._history.objectives, self.tails(n))
+        rows = list(self._history)[:n]
+        failed = [row for row in rows if self._is_failure(row)][-MOST:]
+        infeasible = [row for row in rows if not self._is_failure(row)]
+        return [*telling(infeasible, self._history.objectives, self.tails(n)), *failed]
+
+    def _is_failure(self, row: Evaluation) -> bool:
+        return self._failures is not None and row.trial in self._failures.trials
+
+    def _values_beside(self, n: int, beside: list[Evaluation]) -> FloatArray:
+        """Return what they report, shape (k, m), NaN where that means nothing; tails are compressed."""
+        objectives, tails = self._history.objectives, self.tails(n)
+        failed = [row for row in beside if self._is_failure(row)]
+        Y = objectives_of(beside[: len(beside) - len(failed)], objectives)
+        if self._failures is not None and failed:
+            completed = [row for row in list(self._history)[:n] if row.is_completed]
+            Y = np.vstack([Y, values_of_failures(failed, completed, objectives, self._failures.objective, tails)])
+        return compress(Y, tails)
 
     def _posterior_after(self, n: int, beside: list[Evaluation]) -> Posterior:
         """Return the posterior given the first n rows of the history, of which some only inform."""
         X = self._history.space.encode([row.configuration for row in beside])
-        known = X, compress(objectives_of(beside, self._history.objectives), self.tails(n))
+        known = X, self._values_beside(n, beside)
         return (
             self._fit_samples(n, known)
             if self._surrogate.noise_from_replicates

@@ -17,7 +17,7 @@ from hypermap_lite.surrogates.base import Predictor
 def fitted(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> Predictor:
     """Return what the scenario's surrogate predicts, fitted to a history; see `bayesian_of`."""
     with single_threaded():
-        return bayesian_of(scenario, history, optimizer).predictor()
+        return bayesian_of(scenario, history, optimizer).predictor_of_all()
 
 
 def bayesian_of(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> BayesianOptimizer:

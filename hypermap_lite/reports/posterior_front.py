@@ -94,8 +94,9 @@ class PosteriorFront:
 def posterior_front(scenario: Scenario, history: History, optimizer: Optimizer | None = None) -> PosteriorFront:
     """Return which evaluated configurations are best by the surrogate, which noise does not flatter.
 
-    Only configurations that were evaluated, and are feasible, are considered: of others nobody knows. Nor does anybody
-    of those whose evaluations are all set aside as outliers.
+    Only configurations that were evaluated, and are feasible, are considered: of others nobody knows. Nor are those
+    whose evaluations are all set aside: outliers, failures that are told apart, and successes among failures, that
+    would likely fail if they were repeated.
 
     Parameters
     ----------

@@ -29,6 +29,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "learn_infeasible": False,
             "compress_tails": False,
             "ignore_outliers": False,
+            "separate_failures": False,
         },
         "maximizer": {"type": "multistart_gradient", "smooth_levels": 0, "joint_tolerance": 0.0},
         "acquisition": {

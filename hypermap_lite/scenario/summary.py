@@ -26,7 +26,7 @@ CARE = ("prior_free", "safeguard", "make_up")
 UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
-SAID_IN_WORDS = ("compress_tails", "ignore_outliers", "learn_infeasible")
+SAID_IN_WORDS = ("compress_tails", "ignore_outliers", "learn_infeasible", "separate_failures")
 """Options that have a sentence of their own."""
 
 
@@ -176,6 +176,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append("values far beyond those that count, such as penalties, are compressed for the model")
     if _ignores_outliers(scenario.surrogate.options):
         lines.append("an evaluation far worse than the others foretell is set aside until one near it is as bad")
+    if _separates_failures(scenario):
+        lines.append("evaluations in a bad mode of their own, such as failures, are told apart from the others")
     return [*lines, _prior_use(scenario)]
 
 
@@ -183,6 +185,16 @@ def _ignores_outliers(surrogate: Mapping[str, Any]) -> bool:
     """Tell whether a surrogate with these options has outliers: not one that knows its noise."""
     return bool(
         surrogate.get("ignore_outliers") and surrogate.get("noise") and not surrogate.get("noise_from_replicates")
+    )
+
+
+def _separates_failures(scenario: Scenario) -> bool:
+    """Tell whether a model of where failures are keeps the search away from them."""
+    options = scenario.surrogate.options
+    return bool(
+        options.get("separate_failures")
+        and not options.get("noise_from_replicates")
+        and scenario.acquisition.feasibility_weighting is not None
     )
 
 

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from hypermap_lite.space.permutation import PermutationParameter
+from hypermap_lite.surrogates.failures import Failures
 from hypermap_lite.surrogates.tails import Tails
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
@@ -175,6 +176,28 @@ class Surrogate(Protocol):
         """
         ...
 
+    def failures(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        least: FloatArray,
+        corner: FloatArray | None,
+        *,
+        is_ordered: BoolArray,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Failures | None:
+        """Return which evaluations are so much of a kind of their own that `fit` wants the others alone; None for none.
+
+        Parameters
+        ----------
+        X, Y, least, is_ordered, permutations
+            As in `tails`.
+        corner
+            Reference point of the hypervolume, shape (m,), of which failures have next to nothing; None with one
+            objective.
+        """
+        ...
+
     def fit(
         self,
         X: FloatArray,
@@ -211,7 +234,8 @@ class Surrogate(Protocol):
             replicates; None where it must be learned. A surrogate may ignore it.
         n_beside
             How many of the last rows only inform: they cannot be on the front, being infeasible, and what they report
-            may be off by an unknown constant and more. A surrogate whose `learn_infeasible` is false gets none.
+            may be off by an unknown constant and more; NaN stands for what is not known. A surrogate whose
+            `learn_infeasible` is false gets none.
         """
         ...
 

@@ -21,7 +21,7 @@ import numpy as np
 from hypermap_lite.surrogates.fitted import Fitted
 from hypermap_lite.surrogates.marginal_likelihood import MarginalLikelihood, fit_hyperparameters
 from hypermap_lite.surrogates.offsets import SAYS_NOTHING, Offsets
-from hypermap_lite.typing import FloatArray
+from hypermap_lite.typing import BoolArray, FloatArray
 
 SHARED: Final = 1.0
 """Variance, in units of the standardized outputs, of the constant by which what is reported beside may be off."""
@@ -45,7 +45,7 @@ def with_beside(
     X
         Points beside, shape (k, d), k >= 1.
     Y
-        What is reported there, shape (k, m).
+        What is reported there, shape (k, m); NaN where that says nothing.
     noise_variance
         As in `Surrogate.fit`, of these rows; None where it is learned.
     is_exact
@@ -53,34 +53,41 @@ def with_beside(
     """
     found = []
     for k, fit in enumerate(fits):
-        output, likelihood = fit.output.also(Y[:, k]), fit.likelihood
+        output, likelihood = fit.output.also(np.where(np.isnan(Y[:, k]), fit.output.offset, Y[:, k])), fit.likelihood
         known = likelihood.known_noise
         if known is not None and noise_variance is not None:
             known = np.append(known, output.noise(noise_variance[:, k]))
         whole = replace(likelihood, X=np.vstack([likelihood.X, X]), y=output.values, known_noise=known)
-        found.append(_learned(fit, replace(fit, output=output, likelihood=whole), is_exact=is_exact))
+        whole_fit = replace(fit, output=output, likelihood=whole)
+        found.append(_learned(fit, whole_fit, ~np.isnan(Y[:, k]), is_exact=is_exact))
     return [wide for wide, _ in found] if any(tells for _, tells in found) else fits
 
 
-def _learned(alone: Fitted, whole: Fitted, *, is_exact: bool) -> tuple[Fitted, bool]:
-    """Return a fit with the likely offsets of the outputs beside, and whether these say anything.
+def _learned(alone: Fitted, whole: Fitted, may_tell: BoolArray, *, is_exact: bool) -> tuple[Fitted, bool]:
+    """Return a fit with the likely offsets of k outputs beside, and whether these say anything.
 
-    Of their own offsets the likeliest variance is taken. They say nothing if nonsense is as likely.
+    Those that `may_tell`, shape (k,), have an offset of their own each, of the likeliest variance. They say nothing if
+    nonsense is as likely.
     """
     n, h = len(alone.output.values), alone.hyperparameters
-    is_beside = np.arange(len(whole.output.values)) >= n
+    is_beside = np.append(np.zeros(n, dtype=bool), may_tell)
     so_far = np.zeros(n) if alone.likelihood.offsets is None else alone.likelihood.offsets.own
 
     def off_by(shared: float, own: float) -> MarginalLikelihood:
-        every = np.append(so_far, np.full(len(is_beside) - n, own))
+        every = np.append(so_far, np.where(may_tell, own, SAYS_NOTHING))
         return replace(whole.likelihood, offsets=Offsets(is_beside, shared, every))
 
+    nothing = replace(whole, likelihood=off_by(0.0, SAYS_NOTHING))
+    if not may_tell.any():
+        return nothing, False
     options = [off_by(SHARED, own) for own in OWN]
     likely = min(options, key=lambda option: option(h.to_log())[0])
     fitted = fit_hyperparameters(likely, [h], is_exact=is_exact)
-    if likely(fitted.to_log())[0] < alone.likelihood(h.to_log())[0] + loss_of_nonsense(whole.output.values[n:]):
+    loss = loss_of_nonsense(whole.output.values[n:][may_tell])
+    loss += 0.5 * (~may_tell).sum() * math.log(2 * math.pi * SAYS_NOTHING)  # their part in the likelihood
+    if likely(fitted.to_log())[0] < alone.likelihood(h.to_log())[0] + loss:
         return replace(whole, likelihood=likely, hyperparameters=fitted), True
-    return replace(whole, likelihood=off_by(0.0, SAYS_NOTHING)), False
+    return nothing, False
 
 
 def loss_of_nonsense(y: FloatArray) -> float:

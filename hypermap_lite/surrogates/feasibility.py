@@ -151,6 +151,22 @@ class ProbitProcess:
             X=X[rows], kernel=kernel, variance=variance, constant_variance=self.constant_variance, laplace=laplace
         )
 
+    def evidence(
+        self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray, permutations: Permutations | None = None
+    ) -> tuple[float, float]:
+        """Return how likely n labels of both kinds, shape (n,), are, and how well each is foretold by the others.
+
+        The first is the log of their probability and of the hyperparameters' density, at the likeliest ones by
+        `MAX_ROWS_OF_FIT` of them; the second the sum of the log probabilities of each label given all others.
+        """
+        theta = self._mode(HyperPrior.over(is_ordered, permutations or {}))
+        kernel = MaternHammingKernel(np.exp(theta[:-1]), is_ordered, permutations or {})
+        labels = np.where(is_feasible, 1.0, -1.0)
+        rows = telling_rows(X, is_feasible, kernel, MAX_ROWS_OF_FIT)
+        theta = self._fit(theta, Evidence(X[rows], labels[rows], kernel, self))
+        known = Evidence(X, labels, kernel, self)
+        return -known(theta)[0], float(known.laplace(theta).log_left_out(labels).sum())
+
     def _mode(self, prior: HyperPrior) -> FloatArray:
         """Return the log hyperparameters before any data, shape (d + 1,): lengthscales, variance."""
         return np.log([*prior.mode().lengthscales, self.variance])
@@ -174,6 +190,11 @@ class Evidence:
     """With any lengthscales."""
 
     model: ProbitProcess
+
+    def laplace(self, theta: FloatArray) -> Laplace:
+        """Return the latent function by the log hyperparameters, shape (d + 1,)."""
+        kernel = replace(self.kernel, lengthscales=np.exp(theta[:-1]))
+        return Laplace.at(math.exp(theta[-1]) * kernel(self.X, self.X) + self.model.constant_variance, self.labels)
 
     def __call__(self, theta: FloatArray) -> tuple[float, FloatArray]:
         """Return the value and its gradient by the log hyperparameters, shape (d + 1,)."""

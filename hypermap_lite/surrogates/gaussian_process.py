@@ -21,6 +21,8 @@ from hypermap_lite.surrogates.base import (
     as_prediction,
 )
 from hypermap_lite.surrogates.beside import with_beside
+from hypermap_lite.surrogates.failure_evidence import Densities, likely_failures
+from hypermap_lite.surrogates.failures import Failures
 from hypermap_lite.surrogates.fitted import Fitted
 from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.surrogates.marginal_likelihood import (
@@ -30,7 +32,7 @@ from hypermap_lite.surrogates.marginal_likelihood import (
     MarginalLikelihood,
     fit_hyperparameters,
 )
-from hypermap_lite.surrogates.outliers import Start, fitted_without_outliers
+from hypermap_lite.surrogates.outliers import Start, without_outliers
 from hypermap_lite.surrogates.paths import Path
 from hypermap_lite.surrogates.process import Process, ProcessField, Standardized
 from hypermap_lite.surrogates.tails import FEW, MARGIN, Tails, likely_tail
@@ -87,6 +89,9 @@ class GaussianProcess:
     ignore_outliers: bool = True
     """Whether evaluations that are far worse than the others foretell are set aside, if the noise is learned."""
 
+    separate_failures: bool = True
+    """Whether evaluations in a bad mode of their own are told apart where that makes all of them much likelier."""
+
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
             raise ScenarioError("$.noise_floor", f"the floor is {self.noise_floor}", allowed="a number > 0, at most 1")
@@ -129,6 +134,33 @@ class GaussianProcess:
             found.append(tail)
         return found
 
+    def failures(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        least: FloatArray,
+        corner: FloatArray | None,
+        *,
+        is_ordered: BoolArray,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Failures | None:
+        """Compare processes of each objective's successes and failures with one of both; see `Surrogate.failures`."""
+        if not self.separate_failures or self.noise_from_replicates:
+            return None
+        log_density = Densities(
+            prior=self._prior(is_ordered, permutations),
+            is_ordered=is_ordered,
+            permutations=permutations,
+            compress_tails=self.compress_tails,
+            ignore_outliers=self._has_outliers,
+        )
+        return likely_failures(X, Y, least.tolist(), corner, log_density)
+
+    @property
+    def _has_outliers(self) -> bool:
+        """Whether there may be any: where the noise is known, each says what it says."""
+        return self.ignore_outliers and self.noise and not self.noise_from_replicates
+
     def _prior(self, is_ordered: BoolArray, permutations: Permutations) -> HyperPrior:
         return HyperPrior.over(
             is_ordered if self.categorical_prior else np.ones_like(is_ordered),
@@ -166,9 +198,9 @@ class GaussianProcess:
             starts = [] if start is None else [start[k].hyperparameters]
             if start is None or anew or self.restart:
                 starts.append(prior.mode())
-            if self.ignore_outliers and self.noise and not self.noise_from_replicates:
+            if self._has_outliers:
                 before = None if start is None else start[k]
-                fit = fitted_without_outliers(likelihood, y, starts, before, is_exact=self.restart)
+                fit = without_outliers(likelihood, y, starts, before, is_exact=self.restart).fit
             else:
                 best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
                 fit = Fitted(output=output, likelihood=likelihood, hyperparameters=best)

@@ -75,15 +75,15 @@ class Start:
     outliers: tuple[int, ...]
 
 
-def fitted_without_outliers(
+def without_outliers(
     likelihood: MarginalLikelihood,
     y: FloatArray,
     starts: Sequence[Hyperparameters],
     before: Start | None = None,
     *,
     is_exact: bool,
-) -> Fitted:
-    """Return the fit of one objective with its outliers saying nothing.
+) -> Found:
+    """Find the outliers of one objective, and fit with these saying nothing.
 
     Parameters
     ----------
@@ -98,9 +98,9 @@ def fitted_without_outliers(
     is_exact
         As in `fit_hyperparameters`.
     """
-    found = _Found.fitted(likelihood, y, () if before is None else before.outliers, starts, is_exact=is_exact)
+    found = Found.fitted(likelihood, y, () if before is None else before.outliers, starts, is_exact=is_exact)
     if len(y) < FEWEST:
-        return found.fit
+        return found
     found = _without_mistakes(found)
     while (more := _likelier(found, found.suspects())) is not None:
         found = more
@@ -108,17 +108,34 @@ def fitted_without_outliers(
         found = more
     while (fewer := found.with_least_surprising()) is not None and fewer.log_density > found.log_density:
         found = fewer
-    return _without_mistakes(found).fit
+    return _without_mistakes(found)
 
 
-def _without_mistakes(found: _Found) -> _Found:
+def log_density_with_outliers(
+    likelihood: MarginalLikelihood, y: FloatArray, outliers: Sequence[int], starts: Sequence[Hyperparameters]
+) -> float:
+    """Return the log density of n outputs if certain ones are outliers, but for those that are not alone.
+
+    Parameters
+    ----------
+    likelihood, y, starts
+        As in `without_outliers`.
+    outliers
+        Positions of the outputs, which may be more than a search would find; minus infinity if there are too many.
+    """
+    if len(outliers) > MOST * len(y) or len(y) < FEWEST:
+        return -math.inf
+    return _without_mistakes(Found.fitted(likelihood, y, outliers, starts, is_exact=False)).log_density
+
+
+def _without_mistakes(found: Found) -> Found:
     """Return the same with every outlier back that is better than expected, or not alone."""
     while mistakes := found.mistakes():
         found = found.with_outliers(mistakes, are_outliers=False)
     return found
 
 
-def _likelier(found: _Found, suspects: Sequence[int]) -> _Found | None:
+def _likelier(found: Found, suspects: Sequence[int]) -> Found | None:
     """Return the same with more outliers, if that is much likelier."""
     k = len(suspects)
     while k:
@@ -130,7 +147,7 @@ def _likelier(found: _Found, suspects: Sequence[int]) -> _Found | None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Found:
+class Found:
     """A fit, and which of its outputs say nothing."""
 
     fit: Fitted
@@ -148,7 +165,7 @@ class _Found:
         starts: Sequence[Hyperparameters],
         *,
         is_exact: bool,
-    ) -> _Found:
+    ) -> Found:
         """Fit what is left without some of the outputs."""
         is_outlier = np.zeros(len(y), dtype=bool)
         is_outlier[list(outliers)] = True
@@ -160,12 +177,12 @@ class _Found:
         fit = Fitted(output=output, likelihood=likelihood, hyperparameters=best)
         return cls(fit=fit, is_outlier=is_outlier, y=y, starts=starts, is_exact=is_exact)
 
-    def with_outliers(self, outputs: Sequence[int], *, are_outliers: bool) -> _Found:
+    def with_outliers(self, outputs: Sequence[int], *, are_outliers: bool) -> Found:
         """Return the same with other outputs taken for outliers, or not."""
         is_outlier = self.is_outlier.copy()
         is_outlier[list(outputs)] = are_outliers
         outliers = np.flatnonzero(is_outlier).tolist()
-        return _Found.fitted(self.fit.likelihood, self.y, outliers, self.starts, is_exact=self.is_exact)
+        return Found.fitted(self.fit.likelihood, self.y, outliers, self.starts, is_exact=self.is_exact)
 
     def suspects(self, before: Start | None = None) -> list[int]:
         """Return outputs that are surprisingly bad, each the most surprising one where those before it are left out.
@@ -207,7 +224,7 @@ class _Found:
         """Tell whether the nearest neighbour of an output that is too bad by so much is not half as bad."""
         return bool(self.y[self._nearest[output]] < self.y[output] - distance / 2)
 
-    def with_least_surprising(self) -> _Found | None:
+    def with_least_surprising(self) -> Found | None:
         """Return the same with the least surprising outlier back, if it would be likelier as none; None otherwise."""
         outputs = np.flatnonzero(self.is_outlier)
         if not len(outputs):

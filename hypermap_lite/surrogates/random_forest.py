@@ -18,6 +18,7 @@ from hypermap_lite.surrogates.base import (
     Posterior,
     Prediction,
 )
+from hypermap_lite.surrogates.failures import Failures
 from hypermap_lite.surrogates.tails import Tails
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
@@ -88,6 +89,19 @@ class RandomForest:
     ) -> Tails:
         """Return none: trees split by order, and where values are far apart."""
         return (None,) * Y.shape[1]
+
+    def failures(
+        self,
+        X: FloatArray,
+        Y: FloatArray,
+        least: FloatArray,
+        corner: FloatArray | None,
+        *,
+        is_ordered: BoolArray,
+        permutations: Permutations = NO_PERMUTATIONS,
+    ) -> Failures | None:
+        """Return none: trees split where values have a cliff, and each side has leaves of its own."""
+        return None
 
     def fit(
         self,

@@ -22,6 +22,8 @@ MINIMIZERS = {
     "ackley5": [(0.0,) * 5],
     "goldstein_price": [(0, -1)],
     "zakharov4": [(0,) * 4],
+    "hartmann6_of_20": [tuple(np.insert(HARTMANN6_MINIMIZER, [0, 0, 0, 2, 2, 2, 2, 3, 4, 4, 4, 4, 5, 6], 0.9))],
+    "levy10": [(1,) * 10],
     "func2c": [(1, 1, 0.0898420131 / 2, -0.712656403 / 2), (1, 1, -0.0898420131 / 2, 0.712656403 / 2)],
 }
 
@@ -67,6 +69,31 @@ def test_front_of_zdt2_gives_the_hypervolume_in_closed_form():
     X[:, 0] = np.linspace(0, 1, 2000)
     assert share("zdt2", X) == pytest.approx(1, abs=1e-5)
     assert share("zdt2", X) < 1
+
+
+def test_front_of_zdt1_gives_the_hypervolume_in_closed_form():
+    X = np.zeros((4000, 20))
+    X[:, 0] = np.linspace(0, 1, 4000) ** 2
+    assert share("zdt1_d20", X) == pytest.approx(1, abs=1e-3)
+    assert share("zdt1_d20", X) < 1
+
+
+def test_front_of_dtlz2_with_twelve_parameters_is_that_with_six():
+    X = np.full((4000, 12), 0.5)
+    X[:, 0] = np.linspace(0, 1, 4000)
+    assert share("dtlz2_d12", X) == pytest.approx(1, abs=1e-3)
+    assert share("dtlz2_d12", X) < 1
+
+
+def test_front_of_the_skill_with_twelve_parameters_gives_the_hypervolume_in_closed_form():
+    X = np.full((2000, 12), 0.4)
+    X[:, 4] = np.linspace(0, 1, 2000)
+    X[:, 3] = 0.7
+    assert share("skill12", X) == pytest.approx(1, abs=1e-3)
+    assert share("skill12", X) < 1
+    succeeds = PROBLEMS["skill12"].function(points("skill12", 20_000))[:, 0] < 6
+    assert succeeds.mean() == pytest.approx(0.6 * 0.6 * 0.7 * 0.5, abs=0.01)
+    assert share("skill12", points("skill12", 20_000)) < 1
 
 
 def test_front_of_dtlz2_gives_the_hypervolume_in_closed_form():

@@ -11,7 +11,7 @@ import pytest
 from hypermap_lite.assembly import build_history, build_optimizer
 from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.optimizers import Optimizer
-from hypermap_lite.optimizers.beside import FAR, MOST, telling
+from hypermap_lite.optimizers.beside import FAR, MOST, telling, values_of_failures
 from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.surrogates.tails import Tail
 from tests.optimizers.runs import configurations, resumed, scenario_of, two_objectives
@@ -80,6 +80,18 @@ def test_failures_teach_nothing_and_without_feasible_ones_nothing_is_near() -> N
     history = build_history(load_scenario(scenario_of()))
     history.append(row(0, {"near": 0.5, "far": 20.0}))
     assert telling(list(history), history.objectives) == []
+
+
+def test_of_failures_each_objective_tells_for_itself_but_for_the_one_they_fail_by() -> None:
+    history = build_history(load_scenario(scenario_of()))
+    successes = [row(0, {"near": 0.0, "far": 10.0}, state=State.COMPLETED)]
+    successes.append(row(1, {"near": 1.0, "far": 30.0}, state=State.COMPLETED))
+    values = [(0.5, 20.0), (9.0, 21.0), (0.6, 500.0), (9.0, 500.0)]
+    failed = [row(2 + k, {"near": near, "far": far}) for k, (near, far) in enumerate(values)]
+    by_near = values_of_failures(failed, successes, history.objectives, 0)
+    assert np.array_equal(by_near, [[np.nan, -20], [np.nan, -21], [np.nan] * 2, [np.nan] * 2], equal_nan=True)
+    by_far = values_of_failures(failed, successes, history.objectives, 1)
+    assert np.array_equal(by_far, [[0.5, np.nan], [np.nan] * 2, [0.6, np.nan], [np.nan] * 2], equal_nan=True)
 
 
 def constrained(n: int, answer: Callable[[Values], Values] = dict, **changes: Any) -> Optimizer:

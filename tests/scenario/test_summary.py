@@ -100,6 +100,15 @@ def test_outliers_have_a_line() -> None:
         assert "set aside" not in page(surrogate=surrogate)
 
 
+def test_separate_failures_have_a_line() -> None:
+    line = "evaluations in a bad mode of their own, such as failures, are told apart from the others"
+    assert line in page()
+    for surrogate in ({"separate_failures": False}, {"noise_from_replicates": True}, "random_forest"):
+        assert line not in page(surrogate=surrogate)
+    assert line not in page(acquisition={"feasibility_weighting": "none"})
+    assert line not in page(preset="paper")
+
+
 def test_a_search_without_a_model_names_no_acquisition() -> None:
     text = page(optimizer="random_search")
     assert "evaluations 9 to 50: random_search" in text

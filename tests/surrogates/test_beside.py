@@ -49,6 +49,31 @@ def test_nonsense_beside_teaches_nothing(seed: int) -> None:
     assert error_beyond(nonsense) == pytest.approx(error_beyond(None), rel=1e-3)
 
 
+def test_what_is_not_known_beside_changes_nothing() -> None:
+    unknown = np.full((len(BEYOND), 1), np.nan)
+    assert error_beyond(unknown) == error_beyond(None)
+    some = waves(BEYOND)
+    some[::2] = np.nan
+    model, options = GaussianProcess(), {"is_ordered": ORDERED, "rng": np.random.default_rng(0)}
+    rows = [*range(len(KNOWN)), *range(len(KNOWN) + 1, len(KNOWN) + len(BEYOND), 2)]
+    X, Y = np.vstack([KNOWN, BEYOND]), np.vstack([waves(KNOWN), some])
+    with_gaps = model.fit(X, Y, **options, n_beside=len(BEYOND))
+    without = model.fit(X[rows], Y[rows], **options, n_beside=len(BEYOND) // 2)
+    assert with_gaps.predict(X).mean == pytest.approx(without.predict(X).mean, abs=1e-4)
+    assert with_gaps.predict(X).std == pytest.approx(without.predict(X).std, abs=1e-4)
+
+
+def test_one_objective_may_be_known_beside_and_another_not() -> None:
+    X, alone = np.vstack([KNOWN, BEYOND]), np.column_stack([waves(KNOWN), waves(KNOWN)])
+    beside = np.column_stack([waves(BEYOND)[:, 0], np.full(len(BEYOND), np.nan)])
+    model, options = GaussianProcess(), {"is_ordered": ORDERED, "rng": np.random.default_rng(0)}
+    prediction = model.fit(X, np.vstack([alone, beside]), **options, n_beside=len(BEYOND)).predict(BEYOND)
+    one = model.fit(KNOWN, alone, **options).predict(BEYOND)
+    assert prediction.mean[:, 0] == pytest.approx(waves(BEYOND)[:, 0], abs=0.01)
+    assert prediction.mean[:, 1] == pytest.approx(one.mean[:, 1], abs=1e-4)
+    assert prediction.std[:, 1] == pytest.approx(one.std[:, 1], abs=1e-4)
+
+
 def test_density_of_nonsense_is_that_of_its_covariance() -> None:
     y = np.random.default_rng(0).normal(1, 2, 7)
     covariances = [SHARED * np.ones((7, 7)) + variance * np.eye(7) for variance in NONSENSE]

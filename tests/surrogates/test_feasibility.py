@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from hypermap_lite.surrogates.feasibility import MAX_ROWS, ProbitProcess, telling_rows
+from hypermap_lite.surrogates.feasibility import MAX_ROWS, Evidence, ProbitProcess, telling_rows
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
+from hypermap_lite.surrogates.marginal_likelihood import HyperPrior
 
 ORDERED = np.ones(2, dtype=bool)
 KERNEL = MaternHammingKernel(np.full(2, 0.5), ORDERED)
@@ -124,3 +125,23 @@ def test_points_of_one_kind_are_thinned_evenly() -> None:
     rows = telling_rows(X, np.zeros(1000, dtype=bool), KERNEL, 11)
     assert len(rows) == 11
     assert len(set(rows.tolist())) == 11
+
+
+@pytest.mark.parametrize("n", [80, 200])
+def test_labels_with_a_reason_are_likelier_than_the_same_at_random(n) -> None:
+    rng = np.random.default_rng(6)
+    X = rng.random((n, 2))
+    labels = in_the_band(X)
+    with_reason = ProbitProcess().evidence(X, labels, is_ordered=ORDERED)[0]
+    without = ProbitProcess().evidence(X, rng.permutation(labels), is_ordered=ORDERED)[0]
+    assert without < 1.5 * with_reason < 0
+
+
+def test_evidence_of_labels_is_the_negative_of_what_is_minimized() -> None:
+    X = np.random.default_rng(7).random((30, 2))
+    model, labels = ProbitProcess(), in_the_band(X)
+    start = model._mode(HyperPrior.over(ORDERED, {}))
+    minimized = Evidence(X, np.where(labels, 1.0, -1.0), KERNEL, model)
+    best = model._fit(start, minimized)
+    assert model.evidence(X, labels, is_ordered=ORDERED)[0] == pytest.approx(-minimized(best)[0])
+    assert minimized(best)[0] < minimized(start)[0]

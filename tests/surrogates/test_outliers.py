@@ -9,7 +9,7 @@ from hypermap_lite.optimizers.models import milestones
 from hypermap_lite.surrogates import GaussianProcess
 from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior
 from hypermap_lite.surrogates.marginal_likelihood import HyperPrior, MarginalLikelihood, fit_hyperparameters
-from hypermap_lite.surrogates.outliers import FEWEST, RARE, Start, fitted_without_outliers
+from hypermap_lite.surrogates.outliers import FEWEST, RARE, Start, without_outliers
 from hypermap_lite.surrogates.process import Standardized
 
 ORDERED = np.ones(2, dtype=bool)
@@ -109,7 +109,7 @@ def test_what_is_surprisingly_good_counts() -> None:
 def test_what_turns_out_to_be_good_counts_again() -> None:
     y = spoilt(4, by=-3)
     likelihood = MarginalLikelihood(X, Standardized.of(y).values, ORDERED, HyperPrior.over(ORDERED, {}))
-    found = fitted_without_outliers(likelihood, y, [likelihood.prior.mode()], before=start(4), is_exact=True)
+    found = without_outliers(likelihood, y, [likelihood.prior.mode()], before=start(4), is_exact=True).fit
     assert found.likelihood.offsets is None
 
 
@@ -193,7 +193,7 @@ def test_what_is_set_aside_is_likelier_as_an_outlier() -> None:
     output = Standardized.of(y)
     likelihood = MarginalLikelihood(X, output.values, ORDERED, prior)
     best = fit_hyperparameters(likelihood, [prior.mode()])
-    found = fitted_without_outliers(likelihood, y, [prior.mode()], is_exact=True)
+    found = without_outliers(likelihood, y, [prior.mode()], is_exact=True).fit
     others = np.arange(30) != 4
     alone = MarginalLikelihood(X[others], found.output.values[others], ORDERED, prior)
     mean = found.process.joint(X[4:5])[0][0]
@@ -209,6 +209,6 @@ def test_what_is_set_aside_is_likelier_as_an_outlier() -> None:
 def test_outliers_that_are_none_any_more_count_again() -> None:
     y = waves(X)
     likelihood = MarginalLikelihood(X, Standardized.of(y).values, ORDERED, HyperPrior.over(ORDERED, {}))
-    found = fitted_without_outliers(likelihood, y, [likelihood.prior.mode()], before=start(3, 8), is_exact=True)
+    found = without_outliers(likelihood, y, [likelihood.prior.mode()], before=start(3, 8), is_exact=True).fit
     assert found.likelihood.offsets is None
     assert np.array_equal(found.output.values, Standardized.of(y).values)

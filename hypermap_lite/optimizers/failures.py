@@ -1,0 +1,158 @@
+"""The history as the model sees it: failures that are a kind of their own count as infeasible there.
+
+What an infeasible evaluation tells, a failure tells, too: where success is likely, and, if it makes sense beside the
+successes, what an objective is like there. In the files, and for anybody else, it stays what it was.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from hypermap_lite.acquisition.feasibility_weighted import FeasibilityWeighting
+from hypermap_lite.evaluation.outcome import Evaluation, State
+from hypermap_lite.history.history import History, objectives_of
+from hypermap_lite.objectives import stated_or
+from hypermap_lite.optimizers.models import Models, ToldApart, milestones
+from hypermap_lite.pareto.dominance import non_dominated
+from hypermap_lite.pareto.hypervolume import infer_reference_point
+from hypermap_lite.surrogates.base import Predictor, Surrogate
+from hypermap_lite.surrogates.failures import Failures
+from hypermap_lite.surrogates.feasibility import FeasibilityPosterior, ProbitProcess
+from hypermap_lite.surrogates.reported import WithFailures
+from hypermap_lite.typing import BoolArray
+
+logger = logging.getLogger(__name__)
+
+
+class SeparateModels:
+    """The models of a run after so many rows of its history, whose failures are those that were known by then.
+
+    They are worked out at the milestones of the fits and kept between them, so they are a function of the history.
+
+    Parameters
+    ----------
+    history, surrogate, feasibility_weighting, seed
+        As in `Models`. Without a feasibility weighting nothing would keep the search away from failures, so there are
+        none.
+    """
+
+    def __init__(
+        self, history: History, surrogate: Surrogate, feasibility_weighting: FeasibilityWeighting | None, seed: int
+    ) -> None:
+        self._history = history
+        self._surrogate = surrogate
+        self._feasibility_weighting = feasibility_weighting
+        self._seed = seed
+        self._failures: dict[int, Failures | None] = {}
+        self._models: dict[Failures | None, tuple[Models, ToldApart | None]] = {}
+        self._announced: set[object] = set()
+        self._said: int | None = None
+
+    def after(self, n: int | None = None) -> Models:
+        """Return the models by what was known of failures after the first n rows, all by default.
+
+        They know all rows by now.
+        """
+        failures, history = self.failures(n), self._history
+        if n is None:
+            self._announce(failures)
+        if failures not in self._models:
+            told_apart = None
+            if failures is not None:
+                history = History(history.space, history.objectives, in_order=history.in_order)
+                told_apart = ToldApart(objective=failures.objective, trials=set())
+            models = Models(
+                history,
+                self._surrogate,
+                self._feasibility_weighting,
+                self._seed,
+                failures=told_apart,
+                announced=self._announced,
+            )
+            self._models[failures] = models, told_apart
+        models, told_apart = self._models[failures]
+        if failures is not None and told_apart is not None:
+            for evaluation in list(self._history)[len(models.history) :]:
+                if self._fails(evaluation, failures):
+                    told_apart.trials.add(evaluation.trial)
+                    evaluation = replace(evaluation, state=State.INFEASIBLE)
+                models.history.append(evaluation)
+        return models
+
+    def with_failures(self, predictor: Predictor) -> Predictor:
+        """Return what predicts the objectives wherever that may be, of what does so where an evaluation succeeds."""
+        failures, Y = self.failures(), self._history.Y()
+        if failures is None:
+            return predictor
+        return WithFailures(predictor=predictor, success=self._success(failures), failed=Y[failures.among(Y)])
+
+    def fail_likely(self) -> BoolArray:
+        """Tell which completed evaluations fail, or did not but likely would if they were repeated, shape (n,)."""
+        failures, Y = self.failures(), self._history.Y()
+        if failures is None:
+            return np.zeros(len(Y), dtype=bool)
+        is_unlikely = self._success(failures).log_probability(self._history.X()) < math.log(0.5)
+        return np.asarray(failures.among(Y) | is_unlikely)
+
+    def _success(self, failures: Failures) -> FeasibilityPosterior:
+        """Return where completed evaluations succeed."""
+        space = self._history.space
+        succeeds = ~failures.among(self._history.Y())
+        return ProbitProcess().fit(
+            self._history.X(), succeeds, is_ordered=space.is_ordered, permutations=space.permutations
+        )
+
+    def failures(self, n: int | None = None) -> Failures | None:
+        """Return which evaluations fail by the first n rows of the history, all by default."""
+        growth = self._surrogate.warm_start_growth
+        if growth is None or self._feasibility_weighting is None:
+            return None
+        n_completed = sum(row.is_completed for row in list(self._history)[:n])
+        known = [0, *milestones(n_completed + 1, growth)]
+        return self._failures_at(known[-1])
+
+    def _failures_at(self, k: int) -> Failures | None:
+        """Return which fail by the first k completed evaluations."""
+        if not k:
+            return None
+        if k not in self._failures:
+            X, Y = self._history.X()[:k], self._history.Y()[:k]
+            objectives, space, corner = self._history.objectives, self._history.space, None
+            least = np.full(1, -np.inf)
+            if len(objectives) > 1:
+                corner = stated_or(objectives, infer_reference_point(Y))
+                least = stated_or(objectives, Y[non_dominated(Y)].max(axis=0))
+            self._failures[k] = self._surrogate.failures(
+                X, Y, least, corner, is_ordered=space.is_ordered, permutations=space.permutations
+            )
+        return self._failures[k]
+
+    def _announce(self, failures: Failures | None) -> None:
+        """Log when there begin to be failures, or those of another objective, and when there are none any more."""
+        by = None if failures is None else failures.objective
+        if by == self._said:
+            return
+        self._said, n = by, len(self._history.completed)
+        if failures is None:
+            logger.info("after %d evaluations: none is told apart as a failure any more", n)
+            return
+        objective = self._history.objectives[failures.objective]
+        logger.info(
+            "after %d evaluations: the %d with %s %s %.4g are a kind of their own, such as failures; the model learns"
+            " where they are, and from the others what to expect",
+            n,
+            int(failures.among(self._history.Y()).sum()),
+            objective.name,
+            "above" if objective.sign > 0 else "below",
+            objective.sign * failures.limit,
+        )
+
+    def _fails(self, evaluation: Evaluation, failures: Failures) -> bool:
+        """Tell whether an evaluation is a failure."""
+        if not evaluation.is_completed:
+            return False
+        return bool(failures.among(objectives_of([evaluation], self._history.objectives))[0])
