@@ -83,6 +83,10 @@ def penalized(configuration: Configuration) -> dict[str, float]:
     return {"y": (a - 0.3) ** 2 + 2 * (b - 0.35 - 0.3 * a) ** 2 if a + b < 0.9 else 1e5}
 
 
+TOGETHER: dict[str, Any] = {"separate_failures": False}
+"""Penalties are rather told apart as failures; without that they are a tail."""
+
+
 def rows_of(function: Function, n: int, seed: int = 4) -> list[Evaluation]:
     """Return evaluations at random points."""
     rng = np.random.default_rng(seed)
@@ -104,14 +108,14 @@ def test_penalties_are_compressed_so_that_the_model_sees_the_rest() -> None:
     truth = np.array([penalized(place)["y"] for place in known])
     errors = []
     for compresses in (True, False):
-        optimizer = bayesian(rows, surrogate={"compress_tails": compresses})
+        optimizer = bayesian(rows, surrogate={"compress_tails": compresses, **TOGETHER})
         mean = optimizer.predictor().predict(optimizer.history.space.encode(known)).mean[:, 0]
         errors.append(float(np.median(np.abs(mean - truth))))
     assert errors[0] < 1 < 10 < errors[1]
 
 
 def test_predictions_are_of_what_is_reported() -> None:
-    optimizer = bayesian(rows_of(penalized, 30))
+    optimizer = bayesian(rows_of(penalized, 30), surrogate=TOGETHER)
     space, Y = optimizer.history.space, optimizer.history.Y()[:, 0]
     prediction = optimizer.predictor().predict(optimizer.history.X())
     assert np.median(prediction.mean[Y == 1e5, 0]) == pytest.approx(1e5, rel=0.5)
@@ -123,7 +127,7 @@ def test_predictions_are_of_what_is_reported() -> None:
 def test_tails_are_those_of_the_last_milestone(caplog: pytest.LogCaptureFixture) -> None:
     rows = rows_of(penalized, 30)
     with caplog.at_level("INFO"):
-        models = bayesian(rows)._models
+        models = bayesian(rows, surrogate=TOGETHER)._models
         assert models.tails(7) == (None,)
         assert models.tails(30) == models.tails(28) != models.tails(12)
     assert [record.message.split(";")[0] for record in caplog.records] == [
@@ -133,7 +137,7 @@ def test_tails_are_those_of_the_last_milestone(caplog: pytest.LogCaptureFixture)
 
 @pytest.mark.parametrize("from_replicates", [False, True])
 def test_a_fit_to_compressed_tails_does_not_depend_on_when_it_was_asked_for(from_replicates: bool) -> None:
-    changes = {"surrogate": {"noise_from_replicates": from_replicates}}
+    changes = {"surrogate": {"noise_from_replicates": from_replicates, **TOGETHER}}
     rows = rows_of(penalized, 30)
     optimizer = bayesian([], **changes)
     for row in rows:
@@ -168,6 +172,7 @@ def test_weights_from_boxes_in_the_users_units_see_compressed_tails() -> None:
     boxes = {"type": "bounding_box", "limits": {"near": [0, 1000], "far": [0, 1]}}
     scenario = scenario_of(
         objectives=[{"name": "near"}, {"name": "far"}],
+        surrogate=TOGETHER,
         acquisition={"type": "noisy_expected_improvement", "scalarization": {"type": "tchebyshev"}, "weights": boxes},
     )
     optimizer = resumed(scenario, rows_of(two, 30))
@@ -185,7 +190,7 @@ def test_a_stated_reference_point_is_the_least_limit() -> None:
         ([{"name": "near"}, {"name": "far"}], None),
         ([{"name": "near", "reference_point": 40.0}, {"name": "far"}], 40.0),
     ):
-        optimizer = resumed(scenario_of(objectives=objectives), rows_of(two, 30))
+        optimizer = resumed(scenario_of(objectives=objectives, surrogate=TOGETHER), rows_of(two, 30))
         assert isinstance(optimizer, BayesianOptimizer)
         tail, none = optimizer._models.tails()
         assert none is None
@@ -200,7 +205,7 @@ def test_where_penalties_are_compressed_the_best_is_found() -> None:
             scenario = scenario_of(
                 objectives=[{"name": "y"}],
                 seed=seed,
-                surrogate={"compress_tails": compresses},
+                surrogate={"compress_tails": compresses, **TOGETHER},
                 budget={"evaluations": 30},
                 design_of_experiment={"number_of_samples": 8},
             )
