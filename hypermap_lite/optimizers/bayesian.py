@@ -39,7 +39,6 @@ from hypermap_lite.space.real import FEWEST_CHECKED
 from hypermap_lite.surrogates.base import Posterior, Predictor
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.surrogates.reported import AsReported
-from hypermap_lite.surrogates.tails import compress
 from hypermap_lite.typing import FloatArray, Rng
 
 MAX_INCUMBENTS = 8
@@ -256,11 +255,9 @@ class BayesianOptimizer(Optimizer):
         return suggestion.acquisition_value - by_feasibility.exponent * float(feasibility.log_probability(x)[0])
 
     def _weights(self, normalization: Normalization, rng: Rng) -> FloatArray:
-        """Draw weights of the objectives; where these are in the user's units, tails are compressed as everywhere."""
-        tails = self._models.tails()
-        return self._method.weights.sample(
-            self.history.objectives, lambda y: normalization(compress(y[None], tails)[0]), rng
-        )
+        """Draw weights of the objectives; where these are in the user's units, they see what the model sees."""
+        models = self._models
+        return self._method.weights.sample(self.history.objectives, lambda y: normalization(models.as_told(y)), rng)
 
     def _scorer(
         self, context: AcquisitionContext, feasibility: FeasibilityPosterior | None, guidance: Guidance

@@ -109,6 +109,14 @@ class Models:
         """Return the objectives of all completed evaluations with their tails compressed, shape (n, m)."""
         return compress(self._history.Y(), self.tails())
 
+    def as_told(self, y: FloatArray) -> FloatArray:
+        """Return objectives, shape (m,), as the model would be told them, with nothing worse than the worst success."""
+        y = compress(y[None], self.tails())[0].copy()
+        if self._failures is not None:
+            k = self._failures.objective
+            y[k] = min(y[k], self.told()[:, k].max())
+        return y
+
     def _reported(self, n: int | None = None) -> tuple[FloatArray, FloatArray]:
         """Return the same with the values as they are."""
         if self._surrogate.noise_from_replicates:

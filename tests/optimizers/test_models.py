@@ -165,14 +165,15 @@ def test_a_penalty_among_replicates_is_not_the_noise_of_the_others() -> None:
     assert np.median(noise[optimizer.history.Y()[:, 0] < 1]) < 0.05
 
 
-def test_weights_from_boxes_in_the_users_units_see_compressed_tails() -> None:
+@pytest.mark.parametrize("surrogate", [{}, TOGETHER], ids=["failures", "tails"])
+def test_weights_from_boxes_in_the_users_units_see_compressed_tails_and_successes(surrogate: dict[str, Any]) -> None:
     def two(configuration: Configuration) -> dict[str, float]:
         return {"near": penalized(configuration)["y"], "far": float(configuration["a"])}
 
     boxes = {"type": "bounding_box", "limits": {"near": [0, 1000], "far": [0, 1]}}
     scenario = scenario_of(
         objectives=[{"name": "near"}, {"name": "far"}],
-        surrogate=TOGETHER,
+        surrogate=surrogate,
         acquisition={"type": "noisy_expected_improvement", "scalarization": {"type": "tchebyshev"}, "weights": boxes},
     )
     optimizer = resumed(scenario, rows_of(two, 30))

@@ -49,3 +49,18 @@ def test_evidence_has_the_slope_that_its_weights_say(j) -> None:
     change = (covariance(theta + h) - covariance(theta - h)) / 2e-5
     expected = (Laplace.at(covariance(theta), LABELS).evidence_weights() * change).sum()
     assert (values[1] - values[0]) / 2e-5 == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("theta", [(-1.0, 1.0), (-1.0, 4.0), (1.0, 2.0)])
+def test_what_is_left_out_is_foretold_as_by_all_others_alone(theta) -> None:
+    K = covariance(theta)
+    expected = []
+    for i in range(len(X)):
+        others = np.arange(len(X)) != i
+        laplace = Laplace.at(K[np.ix_(others, others)], LABELS[others])
+        v = np.linalg.solve(laplace.L, laplace.root * K[others, i])
+        mean, variance = K[others, i] @ laplace.slope, K[i, i] - v @ v
+        expected.append(log_ndtr(LABELS[i] * mean / np.sqrt(1 + variance)))
+    found = Laplace.at(K, LABELS).log_left_out(LABELS)
+    np.testing.assert_allclose(np.exp(found), np.exp(expected), atol=0.08)  # the mode moves with each label
+    assert np.abs(np.exp(found) - np.exp(expected)).mean() < 0.02
