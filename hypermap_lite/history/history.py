@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,6 +66,7 @@ class History:
         self.objectives = tuple(objectives)
         self.in_order = in_order
         self._evaluations: list[Evaluation] = []
+        self._kept: dict[str, tuple[int, FloatArray]] = {}
 
     def append(self, evaluation: Evaluation) -> None:
         """Add the next evaluation.
@@ -120,14 +121,14 @@ class History:
 
     def X(self) -> FloatArray:  # noqa: N802 - the field's name
         """Return the codes of the completed evaluations, shape (n, d)."""
-        return self.space.encode([e.configuration for e in self.completed])
+        return self._once("X", lambda: self.space.encode([e.configuration for e in self.completed]))
 
     def Y(self) -> FloatArray:  # noqa: N802 - the field's name
         """Return the objectives of the completed evaluations, to be minimized, shape (n, m).
 
         Values beyond 1e150 in size are cut there: models square them.
         """
-        return objectives_of(self.completed, self.objectives)
+        return self._once("Y", lambda: objectives_of(self.completed, self.objectives))
 
     def samples(self, n_rows: int | None = None) -> Samples:
         """Return the distinct completed configurations with all their replicates pooled.
@@ -177,7 +178,15 @@ class History:
 
     def X_all(self) -> FloatArray:  # noqa: N802 - the field's name
         """Return the codes of all evaluations, whatever their state, shape (len(self), d)."""
-        return self.space.encode([e.configuration for e in self._evaluations])
+        return self._once("X_all", lambda: self.space.encode([e.configuration for e in self._evaluations]))
+
+    def _once(self, name: str, make: Callable[[], FloatArray]) -> FloatArray:
+        """Return a copy of what is made of the evaluations, which is made anew only once there are more of them."""
+        n, made = self._kept.get(name, (-1, np.empty(0)))
+        if n != len(self):
+            made = make()
+            self._kept[name] = len(self), made
+        return made.copy()
 
 
 def objectives_of(evaluations: Sequence[Evaluation], objectives: Sequence[Objective]) -> FloatArray:

@@ -103,7 +103,11 @@ class Models:
 
     def n_observed(self, n: int | None = None) -> int:
         """Return the number of rows of `observed`."""
-        return len(self._reported(n)[0])
+        return len(self._reported(n)[0]) if self._surrogate.noise_from_replicates else self._n_completed(n)
+
+    def _n_completed(self, n: int | None) -> int:
+        """Return how many of the first n rows of the history completed, of all by default."""
+        return sum(row.is_completed for row in list(self._history)[:n])
 
     def told(self) -> FloatArray:
         """Return the objectives of all completed evaluations with their tails compressed, shape (n, m)."""
@@ -122,7 +126,7 @@ class Models:
         if self._surrogate.noise_from_replicates:
             samples = self._history.samples(n)
             return samples.X, samples.Y
-        k = sum(row.is_completed for row in list(self._history)[:n])
+        k = self._n_completed(n)
         return self._history.X()[:k], self._history.Y()[:k]
 
     def tails(self, n: int | None = None) -> Tails:

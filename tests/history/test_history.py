@@ -31,6 +31,22 @@ def test_only_completed_evaluations_have_values_which_are_minimized() -> None:
     assert history.X_all().shape == (3, 1)
 
 
+def test_what_a_history_returns_grows_with_it_and_is_the_callers_to_write_to() -> None:
+    history = History(SPACE, OBJECTIVES)
+    history.append(row(0))
+    for known in (history.X(), history.Y(), history.X_all()):
+        known[:] = 7.0
+    assert history.X().tolist() == history.X_all().tolist() == [[0.0]]
+    assert history.Y().tolist() == [[0.0, 0.0]]
+    history.append(row(1, State.FAILED))
+    assert history.X().tolist() == [[0.0]]
+    assert history.X_all().tolist() == [[0.0], [0.25]]
+    history.append(row(2))
+    assert history.X().tolist() == [[0.0], [0.5]]
+    assert history.X_all().tolist() == [[0.0], [0.25], [0.5]]
+    assert history.Y().tolist() == [[0.0, 0.0], [2.0, -20.0]]
+
+
 def test_an_empty_history_has_the_right_shapes() -> None:
     history = History(SPACE, OBJECTIVES)
     assert history.X().shape == (0, 1)
