@@ -19,6 +19,9 @@ from hypermap_lite.typing import FloatArray
 LOG_SURELY_A_NUMBER = -400.0
 """Log of a growth, in units of the front's range, above which no float of the plain formula vanishes."""
 
+BLOCK = 256
+"""So many points are scored at once: what is worked out for them on the way stays in the processor's cache."""
+
 LOG_NOTHING = -1e30
 """Stands for the log of no gain, so that two of them can be subtracted."""
 
@@ -71,8 +74,11 @@ class HypervolumeImprovement:
 
     @staticmethod
     def _score(mean: FloatArray, std: FloatArray, boxes: Boxes) -> FloatArray:
+        k = math.ceil(mean.shape[1] / BLOCK) or 1
+        blocks = zip(np.array_split(mean, k, axis=1), np.array_split(std, k, axis=1), strict=True)
+        growth = np.concatenate([Growth.of(boxes, *block).value for block in blocks])
         with np.errstate(divide="ignore"):
-            score = np.log(Growth.of(boxes, mean, std).value)
+            score = np.log(growth)
         tiny = score < LOG_SURELY_A_NUMBER
         if tiny.any():
             score[tiny] = LogGrowth.of(boxes, mean[:, tiny], std[:, tiny]).score
@@ -107,11 +113,19 @@ class Gain:
     @classmethod
     def of(cls, limits: FloatArray, mean: FloatArray, std: FloatArray) -> Gain:
         """Take it for limits (S, k), means (S or 1, n) and standard deviations (S or 1, n)."""
+        # In place: memory that is asked for and given back again and again costs more than the arithmetic.
         std = std[:, None]
-        z = (limits[:, :, None] - mean[:, None]) / std
-        density = np.exp(-0.5 * z * z - LOG_SQRT_2PI)
+        z = limits[:, :, None] - mean[:, None]
+        z /= std
+        density = -0.5 * z
+        density *= z
+        density -= LOG_SQRT_2PI
+        np.exp(density, out=density)
         cdf = ndtr(z)
-        return cls(value=np.maximum(std * (density + z * cdf), 0.0), cdf=cdf, density=density)
+        value: FloatArray = np.multiply(z, cdf, out=z)
+        value += density
+        value *= std
+        return cls(value=np.maximum(value, 0.0, out=value), cdf=cdf, density=density)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
