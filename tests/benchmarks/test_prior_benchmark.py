@@ -48,6 +48,27 @@ def test_prior_has_the_deviation_and_the_offset_of_its_level(benchmark):
         assert offsets.std() == pytest.approx(level.offset, rel=0.05)
 
 
+def test_emulated_tasks_have_the_priors_of_their_scenarios(benchmark):
+    assert benchmark.priors_of("branin_currin") == ("none", "strong", "weak", "wrong")
+    assert benchmark.priors_of("object_pushing_emulated") == ("none", "operator", "misleading")
+    parameters = benchmark.parameters_of_task("object_pushing_emulated", "misleading")
+    assert parameters["offset_y_start"]["prior"] == {"type": "gaussian", "mean": 0.25, "std": 0.05}
+    plain = {
+        name: {key: of for key, of in parameter.items() if key != "prior"} for name, parameter in parameters.items()
+    }
+    assert plain == PROBLEMS["object_pushing_emulated"].parameters
+
+
+def test_error_of_a_ratio_is_that_of_its_parts(benchmark):
+    rng = np.random.default_rng(0)
+    draws = rng.normal([3.0, 2.0], [0.6, 0.3], (2000, 20, 2))
+    ratios = draws[:, :, 0].mean(axis=1) / draws[:, :, 1].mean(axis=1)
+    found = [benchmark.ratio(list(a), list(b)).split(" ± ") for a, b in draws[:200].transpose(0, 2, 1)]
+    assert np.mean([float(error) for _, error in found]) == pytest.approx(ratios.std(), rel=0.1)
+    assert [float(of) for of, _ in found] == pytest.approx(ratios[:200], abs=5e-4)
+    assert benchmark.ratio([1.0], [1.0, 2.0]) == "0.667"
+
+
 def test_target_is_reached_when_the_value_is_as_good(benchmark):
     assert benchmark.evaluations_to(PROBLEMS["branin_currin"], [0.1, 0.5, 0.7], 0.5) == 2
     assert benchmark.evaluations_to(PROBLEMS["branin_currin"], [0.1, 0.5, 0.7], 0.8) == float("inf")
