@@ -33,6 +33,9 @@ class FeasibilityWeighting:
     exponent: float = 3.0
     """Power of the probability, > 0."""
 
+    learn_failed: bool = True
+    """Whether evaluations that failed or ran out of time tell of the feasibility what infeasible ones do."""
+
     def __post_init__(self) -> None:
         if not self.exponent > 0:
             raise ScenarioError("$.exponent", f"the power is {self.exponent}", allowed="a number > 0")

@@ -10,6 +10,7 @@ from typing import Final
 ADDED_LATER: Final[Mapping[str, str]] = {
     "$.acquisition.feasibility_weighting.method": '"probability"',
     "$.acquisition.feasibility_weighting.exponent": "1",
+    "$.acquisition.feasibility_weighting.learn_failed": "false",
     "$.acquisition.prior_weighting.make_up": "false",
     "$.acquisition.prior_weighting.prior_free": "0",
     "$.acquisition.prior_weighting.safeguard": "false",

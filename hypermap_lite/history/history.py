@@ -170,9 +170,12 @@ class History:
                 ends.append(i + 1)
         return ends
 
-    def feasibility(self) -> tuple[FloatArray, BoolArray]:
-        """Return the codes of the completed and infeasible evaluations, shape (n, d), and which are feasible, (n,)."""
-        known = [e for e in self._evaluations if e.state.is_feasible is not None]
+    def feasibility(self, *, learn_failed: bool = False) -> tuple[FloatArray, BoolArray]:
+        """Return the codes of the evaluations that tell of feasibility, shape (n, d), and which are feasible, (n,).
+
+        Those that completed or were infeasible; on request those too that failed or ran out of time, as infeasible.
+        """
+        known = self._evaluations if learn_failed else [e for e in self if e.state.is_feasible is not None]
         X = self.space.encode([e.configuration for e in known])
         return X, np.array([e.is_completed for e in known], dtype=bool)
 

@@ -138,12 +138,12 @@ class SeparateModels:
             return
         self._said, n = by, len(self._history.completed)
         if failures is None:
-            logger.info("after %d evaluations: none is told apart as a failure any more", n)
+            logger.info("after %d completed evaluations: none is told apart as a failure any more", n)
             return
         objective = self._history.objectives[failures.objective]
         logger.info(
-            "after %d evaluations: the %d with %s %s %.4g are a kind of their own, such as failures; the model learns"
-            " where they are, and from the others what to expect",
+            "after %d completed evaluations: the %d with %s %s %.4g are a kind of their own, such as failures; the model"
+            " learns where they are, and from the others what to expect",
             n,
             int(failures.among(self._history.Y()).sum()),
             objective.name,

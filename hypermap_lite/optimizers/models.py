@@ -168,8 +168,8 @@ class Models:
             if tail is not None and objective.name not in self._announced:
                 self._announced.add(objective.name)
                 logger.info(
-                    "after %d evaluations: values of %s %s %.4g are far beyond the rest; the model learns from their"
-                    " logarithm",
+                    "after %d completed evaluations: values of %s %s %.4g are far beyond the rest; the model learns from"
+                    " their logarithm",
                     k,
                     objective.name,
                     "above" if objective.sign > 0 else "below",
@@ -245,8 +245,7 @@ class Models:
         X, _ = self.observed(n)
         if len(X) < MIN_COMPLETED:
             return None
-        n_judged = sum(row.state.is_feasible is not None for row in list(self._history)[:n])
-        feasibility = self.feasibility(n=n_judged)
+        feasibility = self.feasibility(n=self._n_judged(n))
         return Evidence(
             posterior=self.posterior() if n == len(self._history) else self._posterior_after(n, self._beside(n)),
             X=X,
@@ -254,6 +253,13 @@ class Models:
             reference_point=reference_point_of(self._history.objectives),
             log_probability=None if feasibility is None else feasibility.log_probability,
         )
+
+    def _n_judged(self, n: int) -> int:
+        """Return how many of the first n rows of the history tell of feasibility."""
+        weighting = self._feasibility_weighting
+        if weighting is not None and weighting.learn_failed:
+            return n
+        return sum(row.state.is_feasible is not None for row in list(self._history)[:n])
 
     def feasibility(
         self, searching: Sequence[Suggestion] | None = None, n: int | None = None
@@ -263,16 +269,17 @@ class Models:
         While there is nothing but this to go by, the pending suggestions are given as `searching`: they count as
         infeasible, so that a batch spreads.
         """
-        X, is_feasible = (known[:n] for known in self._history.feasibility())
-        if self._feasibility_weighting is None or is_feasible.all():
+        weighting = self._feasibility_weighting
+        if weighting is None:
+            return None
+        X, is_feasible = (known[:n] for known in self._history.feasibility(learn_failed=weighting.learn_failed))
+        if is_feasible.all():
             return None
         if self._feasibility_of is None or self._feasibility_of[0] != len(X) or searching is not None:
             space = self._history.space
             pending = space.encode([s.configuration for s in searching or ()])
             known = np.append(is_feasible, np.zeros(len(pending), dtype=bool))
-            posterior = self._feasibility_weighting.fit(
-                np.vstack([X, pending]), known, space.is_ordered, space.permutations
-            )
+            posterior = weighting.fit(np.vstack([X, pending]), known, space.is_ordered, space.permutations)
             self._feasibility_of = (len(X), posterior)
         return self._feasibility_of[1]
 

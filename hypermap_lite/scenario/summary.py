@@ -168,8 +168,11 @@ def _method(scenario: Scenario) -> list[str]:
     lines.append(_trade_offs(scenario))
     if acquisition.feasibility_weighting is None:
         lines.append("infeasible evaluations: not in the acquisition (feasibility_weighting is none)")
-    elif scenario.feasible_output is not None:
-        lines.append("acquisition weighted by the probability of being feasible")
+    else:
+        if scenario.feasible_output is not None:
+            lines.append("acquisition weighted by the probability of being feasible")
+        if acquisition.feasibility_weighting.options.get("learn_failed"):
+            lines.append("evaluations that fail or run out of time keep the search away from where they were")
     if scenario.feasible_output is not None and scenario.surrogate.options.get("learn_infeasible"):
         lines.append("objective values of infeasible evaluations inform the model, unless they look like placeholders")
     if scenario.surrogate.options.get("compress_tails"):

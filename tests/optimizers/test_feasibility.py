@@ -168,11 +168,63 @@ def test_a_single_feasible_point_draws_the_search_near_but_not_onto_it() -> None
     assert 0.03 < np.linalg.norm(x - X[0]) < np.linalg.norm(x - X_infeasible, axis=1).min()
 
 
-def test_failures_say_nothing_of_feasibility() -> None:
-    optimizer = build_optimizer(load_scenario(scenario_of()))
+UNTAUGHT = {"feasibility_weighting": {"learn_failed": False}}
+"""Failed evaluations tell nothing."""
+
+
+def failing_below(bound: float, scenario: Mapping[str, Any], n: int, state: State = State.FAILED) -> Optimizer:
+    optimizer = build_optimizer(load_scenario(scenario))
+    while len(optimizer.history) < n:
+        for s in optimizer.ask():
+            fails = float(s.configuration["a"]) < bound
+            optimizer.tell([Evaluation(suggestion=s, state=state, error="no") if fails else evaluate(s)])
+    return optimizer
+
+
+@pytest.mark.parametrize("state", [State.FAILED, State.TIMEOUT])
+def test_failures_tell_of_feasibility_what_infeasible_evaluations_do(state: State) -> None:
+    scenario = scenario_of(budget={"evaluations": 20})
+    failed = failing_below(0.4, scenario, 20, state)
+    infeasible = failing_below(0.4, scenario, 20, State.INFEASIBLE)
+    assert configurations(failed) == configurations(infeasible)
+    assert failed.history.feasibility()[1].all()
+    assert failed.history.feasibility(learn_failed=True)[1].tolist() == [e.is_completed for e in failed.history]
+
+
+@pytest.mark.parametrize("surrogate", ["gaussian_process", "random_forest"])
+def test_the_search_does_not_come_back_to_where_evaluations_fail(surrogate: str) -> None:
+    """The best of the first objective is where all fail."""
+    scenario = scenario_of(budget={"evaluations": 30}, surrogate={"type": surrogate}, maximizer=LIGHT)
+    failures = {}
+    for name, acquisition in {"taught": {}, "untaught": UNTAUGHT}.items():
+        history = failing_below(0.4, scenario | {"acquisition": acquisition}, 30).history
+        failures[name] = sum(not row.is_completed for row in list(history)[5:])
+    assert failures["taught"] <= 12 < failures["untaught"]
+
+
+def test_failures_that_tell_nothing_are_replaced_by_draws() -> None:
+    optimizer = build_optimizer(load_scenario(scenario_of(acquisition=UNTAUGHT)))
     optimizer.tell([Evaluation(suggestion=s, state=State.FAILED) for s in optimizer.ask(5)])
     assert optimizer.history.feasibility()[1].tolist() == []
     assert optimizer.ask()[0].phase == "random"
+
+
+def test_while_all_fail_the_search_goes_where_none_has() -> None:
+    optimizer = build_optimizer(load_scenario(scenario_of(budget={"evaluations": 20})))
+    optimizer.tell([Evaluation(suggestion=s, state=State.FAILED) for s in optimizer.ask(5)])
+    for _ in range(6):
+        (suggestion,) = optimizer.ask()
+        assert suggestion.phase == "model"
+        x = optimizer.history.space.encode([suggestion.configuration])
+        assert np.linalg.norm(optimizer.history.X_all() - x, axis=1).min() > 0.1
+        optimizer.tell([Evaluation(suggestion=suggestion, state=State.FAILED)])
+
+
+def test_a_resumed_run_has_learnt_from_the_same_failures() -> None:
+    scenario = scenario_of(budget={"evaluations": 16})
+    whole = failing_below(0.4, scenario, 16)
+    (again,) = resumed(scenario, list(whole.history)[:12]).ask()
+    assert replace(again, seconds=0.0) == replace(whole.history[12].suggestion, seconds=0.0)
 
 
 def chakong_haimes(c: Mapping[str, Any]) -> tuple[dict[str, float], bool]:

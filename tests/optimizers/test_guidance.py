@@ -106,6 +106,7 @@ def test_no_draws_make_up_late_in_a_run_or_where_they_are_not_wanted() -> None:
 def test_draws_from_the_prior_make_up_for_nothing() -> None:
     scenario = believing(0.95)
     scenario["budget"] = {"evaluations": 60}
+    scenario["acquisition"] |= {"feasibility_weighting": {"learn_failed": False}}
     optimizer = build_optimizer(load_scenario(scenario))
     for _ in range(11):  # as long as all fail, configurations are drawn from the prior
         optimizer.tell([fail(s) for s in optimizer.ask()])

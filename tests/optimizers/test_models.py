@@ -131,7 +131,7 @@ def test_tails_are_those_of_the_last_milestone(caplog: pytest.LogCaptureFixture)
         assert models.tails(7) == (None,)
         assert models.tails(30) == models.tails(28) != models.tails(12)
     assert [record.message.split(";")[0] for record in caplog.records] == [
-        "after 13 evaluations: values of y above 0.4803 are far beyond the rest"
+        "after 13 completed evaluations: values of y above 0.4803 are far beyond the rest"
     ]
 
 

@@ -136,6 +136,7 @@ def test_configurations_that_are_all_of_mixed_states_are_modelled():
 
 def test_run_whose_confirmations_all_failed_goes_on_without_a_model():
     changes = {"design_of_experiment": {"number_of_samples": 2}, **POOLED}
+    changes["acquisition"] = {"feasibility_weighting": {"learn_failed": False}}
     budget = {"evaluations": 4, "confirm_front": 2}
     optimizer = build_optimizer(load_scenario(scenario_of(budget=budget, **changes)))
     optimizer.tell([sampled(s) for s in optimizer.ask(2)])
