@@ -237,7 +237,10 @@ def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) ->
             logger.warning("%s: %s", path, text)
         for warning in assembly.evaluator_warnings(scenario, runner.evaluator):
             logger.warning("%s", warning)
-        return _with_reports(result_of(folder, runner.run()), scenario, runner)
+        result = result_of(folder, runner.run())
+        if result.hypervolume == 0:
+            logger.warning("%s", _short_of_reference_point(result, folder.objectives))
+        return _with_reports(result, scenario, runner)
 
 
 def _with_reports(result: Result, scenario: Scenario, runner: Runner) -> Result:
@@ -322,6 +325,18 @@ def result_of(folder: RunFolder, reason: StopReason) -> Result:
         run_folder=folder.path,
         stop_reason=reason,
     )
+
+
+def _short_of_reference_point(result: Result, objectives: Sequence[Objective]) -> str:
+    """Say of what no evaluation was good enough to count for the hypervolume."""
+    text = "the hypervolume is 0: no evaluation is better than the reference point in every objective"
+    short = []
+    for o in objectives:
+        values = [values[o.name] for _, values in result.pareto_front]
+        best = min(values, key=lambda value: o.sign * value)
+        if o.reference_point is not None and o.sign * best >= o.sign * o.reference_point:
+            short.append(f"{o.name}, whose best value is {best:g} and whose reference point is {o.reference_point:g}")
+    return f"{text}; none alone in {'; '.join(short)}" if short else text
 
 
 def _reference_point(objectives: Sequence[Objective], Y: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 import csv
 import functools
+import logging
 import subprocess
 import sys
 from pathlib import Path
@@ -48,6 +49,37 @@ def test_the_history_as_a_data_frame_has_every_number_as_written(tmp_path):
     assert frame["trial"].tolist() == list(range(6))
     assert frame["x"].tolist() == [e.configuration["x"] for e in result.evaluations]
     assert frame["f"].tolist() == [e.values["f"] for e in result.evaluations]
+
+
+def test_reference_point_that_nothing_beats_is_warned_of(tmp_path, caplog):
+    objectives = [{"name": "f", "reference_point": 100}, {"name": "g", "goal": "maximize", "reference_point": 50}]
+    result = optimize(SCENARIO | {"objectives": objectives}, two, output_directory=tmp_path)
+    assert result.hypervolume == 0
+    best = max(e.values["g"] for e in result.evaluations)
+    assert (
+        "the hypervolume is 0: no evaluation is better than the reference point in every objective; none alone in g, "
+        f"whose best value is {best:g} and whose reference point is 50"
+    ) in caplog.text
+    assert "none alone in f" not in caplog.text
+    caplog.clear()
+    optimize(SCENARIO, two, output_directory=tmp_path / "beaten")
+    assert "the hypervolume is 0" not in caplog.text
+
+
+def test_retrying_failures_where_none_is_at_the_end_says_so(tmp_path, caplog):
+    def now_and_then(configuration):
+        calls.append(configuration)
+        if len(calls) == 2:
+            raise ValueError("no")
+        return two(configuration)
+
+    calls = []
+    caplog.set_level(logging.INFO)
+    optimize(SCENARIO, now_and_then, output_directory=tmp_path)
+    assert "no failure is evaluated anew" not in caplog.text
+    optimize(SCENARIO, now_and_then, output_directory=tmp_path, retry_failed=True)
+    assert "no failure is evaluated anew: only those after the last usable result are, and there is none" in caplog.text
+    assert len(calls) == 6
 
 
 def test_values_beyond_the_square_root_of_floats_have_a_front_and_no_hypervolume(tmp_path):

@@ -97,7 +97,8 @@ class Runner:
 
     def set_failures_aside(self) -> None:
         """Have the failures at the end of an earlier session evaluated again; call it before `run`."""
-        self.folder.set_failures_aside()
+        if not self.folder.set_failures_aside() and any(map(_is_failure, self.folder.evaluations)):
+            logger.info("no failure is evaluated anew: only those after the last usable result are, and there is none")
 
     def run(self) -> StopReason:
         """Evaluate until the budget, the time or the search space is used up, or a stop is asked for.

@@ -142,8 +142,8 @@ class SeparateModels:
             return
         objective = self._history.objectives[failures.objective]
         logger.info(
-            "after %d completed evaluations: the %d with %s %s %.4g are a kind of their own, such as failures; the model"
-            " learns where they are, and from the others what to expect",
+            "after %d completed evaluations: the %d with %s %s %.4g are a kind of their own, such as failures; the"
+            " model learns where they are, and from the others what to expect",
             n,
             int(failures.among(self._history.Y()).sum()),
             objective.name,

@@ -168,8 +168,8 @@ class Models:
             if tail is not None and objective.name not in self._announced:
                 self._announced.add(objective.name)
                 logger.info(
-                    "after %d completed evaluations: values of %s %s %.4g are far beyond the rest; the model learns from"
-                    " their logarithm",
+                    "after %d completed evaluations: values of %s %s %.4g are far beyond the rest; the model learns"
+                    " from their logarithm",
                     k,
                     objective.name,
                     "above" if objective.sign > 0 else "below",
