@@ -244,7 +244,7 @@ def main() -> None:
     table.write_page(
         arguments.output / "prior_benchmark.md",
         title="What priors gain and cost",
-        command="python benchmarks/prior_benchmark.py",
+        command="python benchmarks/prior_benchmark.py --methods default",
         text=f"{machine()}\n{TEXT}\n\n![curves](prior_benchmark.png)",
         header=(
             *("problem", "method", "prior", "seeds", "final", "relative", "worst", "reached", "99 % reached"),

@@ -238,7 +238,7 @@ def _run_in_folder(runner: Runner, scenario: Scenario, *, retry_failed: bool) ->
         for warning in assembly.evaluator_warnings(scenario, runner.evaluator):
             logger.warning("%s", warning)
         result = result_of(folder, runner.run())
-        if result.hypervolume == 0:
+        if result.hypervolume == 0 and result.stop_reason is not StopReason.INTERRUPTED:
             logger.warning("%s", _short_of_reference_point(result, folder.objectives))
         return _with_reports(result, scenario, runner)
 

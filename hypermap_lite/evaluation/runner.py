@@ -299,8 +299,8 @@ class Runner:
                 f"the last {self._failures} configurations gave no usable result: {evaluation.error}\n"
                 f"  logs: {self.folder.trial_folder(evaluation.trial)}\n"
                 "  hint: Mend the evaluator and give the same command again with --retry-failed, which evaluates them "
-                "anew; without it they count. If it fails because of the parameters, raise "
-                "evaluator.max_consecutive_failures: the search keeps away from where it failed."
+                "anew; without it they count. Or, if it fails because of the parameters, raise "
+                "evaluator.max_consecutive_failures; `check` says whether the search keeps away from where it failed."
             )
 
     def _require_result(self, reason: StopReason) -> None:
