@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -12,7 +12,12 @@ from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Roug
 from hypermap_lite.acquisition.improvement import SMOOTHING, log_softplus
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.surrogates.base import Permutations, Posterior
-from hypermap_lite.surrogates.feasibility import FeasibilityModel, FeasibilityPosterior, ProbitProcess
+from hypermap_lite.surrogates.feasibility import (
+    Approximation,
+    FeasibilityModel,
+    FeasibilityPosterior,
+    ProbitProcess,
+)
 from hypermap_lite.typing import BoolArray, FloatArray
 
 
@@ -33,8 +38,15 @@ class FeasibilityWeighting:
     exponent: float = 3.0
     """Power of the probability, > 0."""
 
+    approximation: Approximation = "both"
+    """Of the classifier: the more cautious of two, or ``laplace`` alone; see `ProbitProcess.approximation`."""
+
     learn_failed: bool = True
     """Whether evaluations that failed or ran out of time tell of the feasibility what infeasible ones do."""
+
+    first_feasible: Literal["sobol", "classifier"] = "sobol"
+    """Among what points the first feasible one is looked for: those of a Sobol sequence, each of which has its turn, or
+    all, where the classifier leads; see `optimizers.first_feasible`."""
 
     def __post_init__(self) -> None:
         if not self.exponent > 0:
@@ -48,7 +60,7 @@ class FeasibilityWeighting:
         self, X: FloatArray, is_feasible: BoolArray, is_ordered: BoolArray, permutations: Permutations
     ) -> FeasibilityPosterior:
         """Learn from n evaluations, shapes (n, d) and (n,), where points are feasible."""
-        model: FeasibilityModel = ProbitProcess()
+        model: FeasibilityModel = ProbitProcess(approximation=self.approximation)
         return model.fit(X, is_feasible, is_ordered=is_ordered, permutations=permutations)
 
 

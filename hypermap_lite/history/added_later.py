@@ -10,7 +10,9 @@ from typing import Final
 ADDED_LATER: Final[Mapping[str, str]] = {
     "$.acquisition.feasibility_weighting.method": '"probability"',
     "$.acquisition.feasibility_weighting.exponent": "1",
+    "$.acquisition.feasibility_weighting.approximation": '"laplace"',
     "$.acquisition.feasibility_weighting.learn_failed": "false",
+    "$.acquisition.feasibility_weighting.first_feasible": '"classifier"',
     "$.acquisition.prior_weighting.make_up": "false",
     "$.acquisition.prior_weighting.prior_free": "0",
     "$.acquisition.prior_weighting.safeguard": "false",

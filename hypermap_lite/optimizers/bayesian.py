@@ -10,11 +10,7 @@ import numpy as np
 
 from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
 from hypermap_lite.acquisition.boundary_weighted import BoundaryWeighted
-from hypermap_lite.acquisition.feasibility_weighted import (
-    FeasibilitySearch,
-    Improving,
-    optimistic_ideal,
-)
+from hypermap_lite.acquisition.feasibility_weighted import FeasibilitySearch, Improving, optimistic_ideal
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.random_sampling import RandomSampling
 from hypermap_lite.evaluation.outcome import MODEL, RANDOM, Suggestion
@@ -24,6 +20,7 @@ from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.optimizers.boundary import boundary_factor
 from hypermap_lite.optimizers.failures import SeparateModels
+from hypermap_lite.optimizers.first_feasible import choose, is_in_turn, points_left
 from hypermap_lite.optimizers.foreseen import foreseen_reference_point, spread_points
 from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
@@ -144,9 +141,21 @@ class BayesianOptimizer(Optimizer):
         if has_objectives:
             return self._with_model(trial, rng, feasibility, guidance)
         if feasibility is not None:
-            scorer = self._searching(feasibility, guidance)
-            return self._by_score(scorer, self._models.history.X(), trial, rng, guidance)
+            return self._search(trial, rng, feasibility, guidance)
         return self._drawn_by(self._method.fallback, trial, rng)
+
+    def _search(self, trial: int, rng: Rng, feasibility: FeasibilityPosterior, guidance: Guidance) -> Suggestion | None:
+        """Return the next point of the search for feasible ones, of which there are too few for a model."""
+        scorer: Scorer = FeasibilitySearch(feasibility=feasibility)
+        weighting, weight, known = self._method.feasibility_weighting, guidance.weight, self._models.history
+        if weighting is not None and weighting.first_feasible == "sobol" and not known.completed and not weight:
+            left = points_left(self.history.space, self._seed, self.taken_keys())
+            if len(left):
+                x, score = choose(left, scorer, in_turn=is_in_turn(trial, guidance))
+                return self._told_of(guidance, trial, x, RANDOM if score is None else MODEL, score)
+        if weight and self._method.prior_weighting is not None:
+            scorer = self._method.prior_weighting.weigh(scorer, guidance.belief.prior, weight)
+        return self._by_score(scorer, known.X(), trial, rng, guidance)
 
     def _lacks_draws(self, trial: int) -> bool:
         """Tell whether draws all over the space are to make up for those that the design took from a dropped prior.
@@ -163,9 +172,7 @@ class BayesianOptimizer(Optimizer):
     def _drawn_anywhere(self, trial: int, guidance: Guidance) -> Suggestion | None:
         """Return a uniform draw in place of a suggestion without a prior, with what the history says of that."""
         drawn = self._drawn_by(RandomSampling(), trial, generator(self._seed, Stream.ESCAPE, trial))
-        if drawn is None:
-            return None
-        return replace(drawn, prior_weight=guidance.weight, prior_trust=guidance.trust, prior_of=guidance.belief.name)
+        return None if drawn is None else guidance.said_of(drawn)
 
     def _drawn_by(self, design: InitialDesign, trial: int, rng: Rng) -> Suggestion | None:
         """Return a new point of a design instead of one by the model, if possible apart from pending ones; or None."""
@@ -283,12 +290,6 @@ class BayesianOptimizer(Optimizer):
         factor = boundary_factor(models.history, models.told(), mean, least)
         return scorer if factor == 1 else BoundaryWeighted(inner=scorer, axes=axes, factor=factor)
 
-    def _searching(self, feasibility: FeasibilityPosterior, guidance: Guidance) -> Scorer:
-        """Return the search for the first feasible points, with the prior where it counts."""
-        scorer = FeasibilitySearch(feasibility=feasibility)
-        weighting, weight = self._method.prior_weighting, guidance.weight
-        return scorer if weighting is None or not weight else weighting.weigh(scorer, guidance.belief.prior, weight)
-
     def _by_score(
         self, scorer: Scorer, incumbents: FloatArray, trial: int, rng: Rng, guidance: Guidance
     ) -> Suggestion | None:
@@ -308,20 +309,18 @@ class BayesianOptimizer(Optimizer):
         )
         if best is None:
             return None
-        configuration = space.decode(best.x[None])[0]
-        value = best.score
-        if isinstance(scorer, BoundaryWeighted):
-            # what the model promises, not what is believed of it
-            value -= float(scorer.log_weight(space.encode([configuration]))[0])
-        return Suggestion(
-            trial=trial,
-            configuration=configuration,
-            phase=MODEL,
-            prior_weight=guidance.weight,
-            prior_trust=guidance.trust,
-            prior_of=guidance.belief.name,
-            acquisition_value=value,
-        )
+        suggestion = self._told_of(guidance, trial, best.x, MODEL, best.score)
+        if not isinstance(scorer, BoundaryWeighted):
+            return suggestion
+        # what the model promises, not what is believed of it
+        believed = float(scorer.log_weight(space.encode([suggestion.configuration]))[0])
+        return replace(suggestion, acquisition_value=best.score - believed)
+
+    def _told_of(self, guidance: Guidance, trial: int, x: FloatArray, phase: str, value: float | None) -> Suggestion:
+        """Return the suggestion of a point, shape (d,), with what the history says of it."""
+        configuration = self.history.space.decode(x[None])[0]
+        suggestion = Suggestion(trial=trial, configuration=configuration, phase=phase, acquisition_value=value)
+        return guidance.said_of(suggestion)
 
     def _context(self, rng: Rng, feasibility: FeasibilityPosterior | None) -> AcquisitionContext:
         X, Y = self._models.observed()

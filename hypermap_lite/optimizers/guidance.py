@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from hypermap_lite.acquisition.base import PriorWeighting
-from hypermap_lite.evaluation.outcome import Evaluation
+from hypermap_lite.evaluation.outcome import Evaluation, Suggestion
 from hypermap_lite.optimizers.prior_trust import LEVELS, Evidence, checkpoints, compare
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.priors.beliefs import Belief, together
@@ -32,6 +32,10 @@ class Guidance:
 
     trust: float | None = None
     """Factor in the weight: 1, halved by each failed check; None without checks."""
+
+    def said_of(self, suggestion: Suggestion) -> Suggestion:
+        """Return a suggestion with the prior's part in it."""
+        return replace(suggestion, prior_weight=self.weight, prior_trust=self.trust, prior_of=self.belief.name)
 
 
 class Guide:

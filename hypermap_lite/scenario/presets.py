@@ -37,7 +37,13 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "screening": 0,
             "scalarization": {"type": "linear"},
             "weights": {"type": "dirichlet", "alpha": 1.0},
-            "feasibility_weighting": {"method": "probability", "exponent": 1.0, "learn_failed": False},
+            "feasibility_weighting": {
+                "method": "probability",
+                "exponent": 1.0,
+                "approximation": "laplace",
+                "learn_failed": False,
+                "first_feasible": "classifier",
+            },
             "prior_weighting": {
                 "method": "pibo",
                 "floor": 1e-6,

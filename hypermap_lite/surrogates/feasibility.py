@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final, Protocol, TypeAlias
+from typing import Final, Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import log_ndtr, ndtr
 
 from hypermap_lite.surrogates.base import Permutations
+from hypermap_lite.surrogates.expectation_propagation import ExpectationPropagation
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.laplace import Laplace
 from hypermap_lite.surrogates.linear_algebra import solve_lower
@@ -18,11 +19,20 @@ from hypermap_lite.surrogates.marginal_likelihood import LENGTHSCALE_BOUNDS, Hyp
 from hypermap_lite.typing import BoolArray, FloatArray
 
 IndexArray: TypeAlias = NDArray[np.intp]
+Approximation: TypeAlias = Literal["both", "laplace"]
 
 LOG_SQRT_2PI: Final = 0.5 * math.log(2 * math.pi)
 VARIANCE_FLOOR: Final = 1e-9
 VARIANCE_BOUNDS: Final = (0.1, 1000.0)
 """Of the latent function."""
+
+DOUBT: Final = 3.0
+"""Power of the share of the latent variance that the evaluations leave: how doubtful expectation propagation is.
+
+That is the chance that it is wrong of a point, and the point feasible in spite of it. The chance is next to none where
+many were infeasible, and a search that trusts the model to a power still looks for regions out of its reach: without
+it, by expectation propagation alone, C2-DTLZ2 ends at 0.76 of the hypervolume instead of 0.97.
+"""
 
 MAX_ITERATIONS: Final = 30
 MAX_ROWS: Final = 400
@@ -108,15 +118,15 @@ class FeasibilityModel(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProbitProcess:
-    r"""Gaussian process classification by the Laplace approximation [1]_.
+    r"""Gaussian process classification by the Laplace approximation [1]_, and by expectation propagation on request.
 
     .. math:: P(x \text{ feasible}) = \Phi(\mu(x) / \sqrt{1 + \sigma^2(x)})
 
     with mean and variance of a latent function, a Matern-5/2 process with one lengthscale per axis around an unknown
-    constant. Lengthscales and variance are the most likely ones a posteriori. If all points are feasible, or fewer than
-    `FEWEST_OF_FIT`, which says too little about them, they stay at the mode of their priors, and lengthscales below
-    `SPACING` if none is; the probability then rises next to feasible points, falls next to infeasible ones and is
-    undecided far away.
+    constant. Lengthscales and variance are the most likely ones a posteriori, by the Laplace approximation. If all
+    points are feasible, or fewer than `FEWEST_OF_FIT`, which says too little about them, they stay at the mode of their
+    priors, and lengthscales below `SPACING` if none is; the probability then rises next to feasible points, falls next
+    to infeasible ones and is undecided far away.
 
     References
     ----------
@@ -129,9 +139,16 @@ class ProbitProcess:
     variance: float = 4.0
     """Median of the prior of the latent function's variance: large values make steep boundaries."""
 
+    approximation: Approximation = "laplace"
+    """What tells the probability once there are feasible points: ``laplace``, or the more cautious of ``both``.
+
+    The Laplace approximation is unsure where everything was infeasible: of a corner with thirty such evaluations it
+    says that a tenth of it is feasible, and a search for a better point beyond a constraint comes back to it for ever.
+    """
+
     def fit(
         self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray, permutations: Permutations | None = None
-    ) -> ProbitPosterior:
+    ) -> ProbitPosterior | CautiousPosterior:
         """Fit n evaluations; see `FeasibilityModel.fit`."""
         labels = np.where(is_feasible, 1.0, -1.0)
         theta = self._mode(HyperPrior.over(is_ordered, permutations or {}))
@@ -146,10 +163,17 @@ class ProbitProcess:
         kernel = replace(prior, lengthscales=np.exp(theta[:-1]))
         variance = math.exp(theta[-1])
         K = variance * kernel(X[rows], X[rows]) + self.constant_variance
-        laplace = Laplace.at(K, labels[rows])
-        return ProbitPosterior(
-            X=X[rows], kernel=kernel, variance=variance, constant_variance=self.constant_variance, laplace=laplace
+        by_mode = ProbitPosterior(
+            X=X[rows],
+            kernel=kernel,
+            variance=variance,
+            constant_variance=self.constant_variance,
+            values=Laplace.at(K, labels[rows]),
         )
+        if self.approximation == "laplace" or not is_feasible.any():
+            return by_mode
+        by_moments = replace(by_mode, values=ExpectationPropagation.at(K, labels[rows]), doubt=DOUBT)
+        return CautiousPosterior(by_mode, by_moments)
 
     def evidence(
         self, X: FloatArray, is_feasible: BoolArray, *, is_ordered: BoolArray, permutations: Permutations | None = None
@@ -215,6 +239,25 @@ class Evidence:
         return float(value), np.append(z / sigma + 1.0, excess)
 
 
+class LatentValues(Protocol):
+    """A normal approximation of the latent values at b evaluations given their labels."""
+
+    @property
+    def slope(self) -> FloatArray:
+        """The inverse of their prior covariance times their means, shape (b,)."""
+        ...
+
+    @property
+    def root(self) -> FloatArray:
+        """Square root of the precision that each label adds, shape (b,)."""
+        ...
+
+    @property
+    def L(self) -> FloatArray:  # noqa: N802 - the field's name
+        """Cholesky factor of I + root K root, shape (b, b)."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProbitPosterior:
     """The latent function given the evaluations."""
@@ -225,7 +268,11 @@ class ProbitPosterior:
     kernel: MaternHammingKernel
     variance: float
     constant_variance: float
-    laplace: Laplace
+    values: LatentValues
+    """Of the latent function at the evaluations."""
+
+    doubt: float = 0.0
+    """Of what the model says of a point: a power, see `DOUBT`; 0 for none."""
 
     @property
     def is_differentiable(self) -> bool:
@@ -235,16 +282,27 @@ class ProbitPosterior:
     def log_probability(self, X: FloatArray) -> FloatArray:
         """Return the log probability that each of n points is feasible, shape (n,)."""
         latent = self._latent(X)
-        return np.asarray(log_ndtr(latent.mean / np.sqrt(1.0 + latent.variance)))
+        z = latent.mean / np.sqrt(1.0 + latent.variance)
+        return np.asarray(log_ndtr(z)) if not self.doubt else np.log(ndtr(z) + self._doubt(latent) * ndtr(-z))
 
     def log_probability_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the log probabilities, shape (n,), and their gradients, shape (n, d)."""
         latent = self._latent(X)
         width = np.sqrt(1.0 + latent.variance)
         z = latent.mean / width
-        value = np.asarray(log_ndtr(z))
-        by_z = np.exp(-0.5 * z * z - LOG_SQRT_2PI - value)
-        return value, self._pull(latent, X, by_z / width, -0.5 * by_z * z / width**2)
+        if not self.doubt:
+            value = np.asarray(log_ndtr(z))
+            by_z = np.exp(-0.5 * z * z - LOG_SQRT_2PI - value)
+            return value, self._pull(latent, X, by_z / width, -0.5 * by_z * z / width**2)
+        doubt = self._doubt(latent)
+        probability = ndtr(z) + doubt * ndtr(-z)
+        by_z = (1.0 - doubt) * np.exp(-0.5 * z * z - LOG_SQRT_2PI) / probability
+        by_variance = self.doubt * doubt * ndtr(-z) / (latent.variance * probability) - 0.5 * by_z * z / width**2
+        return np.log(probability), self._pull(latent, X, by_z / width, by_variance)
+
+    def _doubt(self, latent: Latent) -> FloatArray:
+        """Return the chance that the model is wrong of n points, shape (n,)."""
+        return np.asarray((latent.variance / self._total) ** self.doubt)
 
     def log_novelty(self, X: FloatArray) -> FloatArray:
         """Return the log of the latent standard deviation times the share of a point's surroundings in the cube, (n,).
@@ -279,15 +337,50 @@ class ProbitPosterior:
     def _latent(self, X: FloatArray) -> Latent:
         C, H = self.kernel.parts(X, self.X)
         k = self.variance * C + self.constant_variance  # (n, b)
-        v = solve_lower(self.laplace.L, (k * self.laplace.root).T)  # (b, n)
+        v = solve_lower(self.values.L, (k * self.values.root).T)  # (b, n)
         variance = np.maximum(self._total - np.einsum("bn,bn->n", v, v), VARIANCE_FLOOR)
-        return Latent(k @ self.laplace.slope, variance, v, H)
+        return Latent(k @ self.values.slope, variance, v, H)
 
     def _pull(self, latent: Latent, X: FloatArray, by_mean: FloatArray, by_variance: FloatArray) -> FloatArray:
         """Return the gradient by X of a function of mean and variance, shape (n, d)."""
-        u = solve_lower(self.laplace.L, latent.v, transposed=True).T * self.laplace.root  # (n, b)
-        by_k = by_mean[:, None] * self.laplace.slope - 2.0 * by_variance[:, None] * u
+        u = solve_lower(self.values.L, latent.v, transposed=True).T * self.values.root  # (n, b)
+        by_k = by_mean[:, None] * self.values.slope - 2.0 * by_variance[:, None] * u
         return self.kernel.pull_coordinates(self.variance * by_k * latent.H, X, self.X)
+
+
+@dataclass(frozen=True, slots=True)
+class CautiousPosterior:
+    """The less probable of what two approximations of the same model say of each point.
+
+    The mode is too unsure deep among infeasible evaluations, the moments are too sure of regions without any. The
+    novelty is that by the mode.
+    """
+
+    by_mode: ProbitPosterior
+    by_moments: ProbitPosterior
+
+    @property
+    def is_differentiable(self) -> bool:
+        """True: but for a kink where both say the same."""
+        return True
+
+    def log_probability(self, X: FloatArray) -> FloatArray:
+        """Return the log probability that each of n points is feasible, shape (n,)."""
+        return np.minimum(self.by_mode.log_probability(X), self.by_moments.log_probability(X))
+
+    def log_probability_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log probabilities, shape (n,), and their gradients, shape (n, d)."""
+        value, gradient = self.by_mode.log_probability_with_gradient(X)
+        other, slope = self.by_moments.log_probability_with_gradient(X)
+        return np.minimum(value, other), np.where((value <= other)[:, None], gradient, slope)
+
+    def log_novelty(self, X: FloatArray) -> FloatArray:
+        """Return the log of how much an evaluation of each of n points would tell, up to a constant, shape (n,)."""
+        return self.by_mode.log_novelty(X)
+
+    def log_novelty_with_gradient(self, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the log novelties, shape (n,), and their gradients, shape (n, d)."""
+        return self.by_mode.log_novelty_with_gradient(X)
 
 
 @dataclass(frozen=True, slots=True)

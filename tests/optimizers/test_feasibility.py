@@ -11,9 +11,12 @@ import pytest
 
 from hypermap_lite.acquisition import ACQUISITIONS
 from hypermap_lite.assembly import build_optimizer
+from hypermap_lite.design.sobol import Sobol
 from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.optimizers import Optimizer
+from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.hypervolume import hypervolume
+from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scenario.loader import load_scenario
 from tests.optimizers.runs import configurations, evaluate, resumed, run, scenario_of
 
@@ -123,8 +126,12 @@ def test_weighting_can_be_switched_off() -> None:
     assert configurations(constrained(off, 9)) != configurations(constrained(scenario_of(maximizer=LIGHT), 9))
 
 
-def test_while_all_are_infeasible_the_search_goes_where_nobody_was_and_draws_nothing_at_random() -> None:
-    optimizer = build_optimizer(load_scenario(scenario_of(design_of_experiment={"number_of_samples": 4})))
+BY_CLASSIFIER = {"feasibility_weighting": {"first_feasible": "classifier"}}
+
+
+def test_while_all_are_infeasible_the_classifier_goes_where_nobody_was_and_draws_nothing_at_random() -> None:
+    scenario = scenario_of(design_of_experiment={"number_of_samples": 4}, acquisition=BY_CLASSIFIER)
+    optimizer = build_optimizer(load_scenario(scenario))
     while len(optimizer.history) < 12:
         suggestions = optimizer.ask(2)
         optimizer.tell([Evaluation(suggestion=s, state=State.INFEASIBLE) for s in suggestions])
@@ -132,6 +139,77 @@ def test_while_all_are_infeasible_the_search_goes_where_nobody_was_and_draws_not
     X = optimizer.history.X_all()
     distances = np.linalg.norm(X[:, None] - X[None], axis=2) + 9 * np.eye(len(X))
     assert distances[4:].min() > 0.1
+
+
+def all_infeasible(scenario: Mapping[str, Any], n: int, *, batch: int = 1) -> Optimizer:
+    optimizer = build_optimizer(load_scenario(scenario))
+    while len(optimizer.history) < n:
+        optimizer.tell([Evaluation(suggestion=s, state=State.INFEASIBLE) for s in optimizer.ask(batch)])
+    return optimizer
+
+
+@pytest.mark.parametrize("batch", [1, 3])
+@pytest.mark.parametrize("dimension", [2, 6])
+def test_while_all_are_infeasible_each_point_of_the_designs_sequence_has_its_turn(dimension: int, batch: int) -> None:
+    parameters = {f"x{j}": {"parameter_type": "real", "values": [0, 1]} for j in range(dimension)}
+    scenario = scenario_of(
+        input_parameters=parameters,
+        design_of_experiment={"type": "sobol", "number_of_samples": 8},
+        budget={"evaluations": 48},
+    )
+    optimizer = all_infeasible(scenario, 48, batch=batch)
+    phases = [e.suggestion.phase for e in optimizer.history]
+    assert phases == ["design"] * 8 + ["model", "random"] * 20
+    first = Sobol().points(
+        optimizer.history.space, ProductPrior(dimension), 28, generator(scenario["seed"], Stream.DESIGN)
+    )
+    assert not optimizer.history.space.unseen(first, optimizer.taken_keys()).any()
+    assert all((e.suggestion.acquisition_value is None) == (e.suggestion.phase != "model") for e in optimizer.history)
+
+
+def test_a_region_at_a_bound_of_one_axis_is_found_though_the_classifier_looks_elsewhere() -> None:
+    def n_until_feasible(acquisition: Mapping[str, Any]) -> int:
+        parameters = {f"x{j}": {"parameter_type": "real", "values": [0, 1]} for j in range(4)}
+        budget = {"evaluations": 60}
+        scenario = scenario_of(input_parameters=parameters, budget=budget, acquisition=acquisition, maximizer=LIGHT)
+        optimizer = build_optimizer(load_scenario(scenario))
+        for n in range(50):
+            (suggestion,) = optimizer.ask()
+            if float(suggestion.configuration["x2"]) < 0.04:
+                return n
+            optimizer.tell([Evaluation(suggestion=suggestion, state=State.INFEASIBLE)])
+        return 50
+
+    assert n_until_feasible({}) < 35
+    assert n_until_feasible(BY_CLASSIFIER) == 50
+
+
+def test_a_prior_leads_the_search_for_the_first_feasible_point_but_for_its_free_steps() -> None:
+    scenario = scenario_of(budget={"evaluations": 40})
+    scenario["input_parameters"]["a"] |= {"prior": {"type": "gaussian", "mean": 0.2, "std": 0.1}}
+    rows = list(all_infeasible(scenario, 30).history)
+    later = [e.suggestion for e in rows if e.suggestion.phase not in {"design", "default"}]
+    assert {s.phase for s in later if s.prior_weight} == {"model"}
+    assert {s.phase for s in later if s.prior_weight == 0} == {"random"}
+    assert np.mean([bool(s.prior_weight) for s in later]) > 0.5
+
+
+def test_the_search_for_the_first_feasible_point_goes_on_after_a_resume() -> None:
+    scenario = scenario_of(budget={"evaluations": 24}, seed=3)
+    whole = all_infeasible(scenario, 24)
+    for n in (9, 14, 19):
+        (again,) = resumed(scenario, list(whole.history)[:n]).ask()
+        assert replace(again, seconds=0.0) == replace(whole.history[n].suggestion, seconds=0.0)
+
+
+def test_where_the_sequence_has_nothing_left_the_search_goes_on() -> None:
+    scenario = scenario_of(
+        input_parameters={"n": {"parameter_type": "integer", "values": [0, 30]}},
+        objectives=[{"name": "near"}],
+        budget={"evaluations": 31},
+    )
+    optimizer = all_infeasible(scenario, 31)
+    assert sorted(int(e.configuration["n"]) for e in optimizer.history) == [*range(31)]
 
 
 def test_the_first_feasible_point_is_found_sooner_than_by_chance() -> None:
@@ -214,9 +292,9 @@ def test_while_all_fail_the_search_goes_where_none_has() -> None:
     optimizer.tell([Evaluation(suggestion=s, state=State.FAILED) for s in optimizer.ask(5)])
     for _ in range(6):
         (suggestion,) = optimizer.ask()
-        assert suggestion.phase == "model"
+        assert suggestion.phase == ("random" if suggestion.trial % 2 else "model")
         x = optimizer.history.space.encode([suggestion.configuration])
-        assert np.linalg.norm(optimizer.history.X_all() - x, axis=1).min() > 0.1
+        assert np.linalg.norm(optimizer.history.X_all() - x, axis=1).min() > 0.05
         optimizer.tell([Evaluation(suggestion=suggestion, state=State.FAILED)])
 
 

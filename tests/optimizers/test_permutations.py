@@ -163,7 +163,8 @@ def test_a_run_within_constraints_goes_on_when_everything_was_infeasible(constra
     optimizer = build_optimizer(load_scenario(scenario))
     for _ in range(7):
         optimizer.tell([Evaluation(suggestion=s, state=State.INFEASIBLE) for s in optimizer.ask()])
-    assert [e.suggestion.phase for e in optimizer.history] == ["design"] * 5 + ["model"] * 2
+    assert [e.suggestion.phase for e in optimizer.history] == ["design"] * 5 + ["random", "model"]
+    assert all(optimizer.history.space.contains(e.configuration) for e in optimizer.history)
 
 
 @pytest.mark.parametrize("kernel", ["spearman", "kendall", "hamming"])

@@ -1,5 +1,7 @@
 """Tests for feasibility.py."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from hypermap_lite.surrogates.feasibility import MAX_ROWS, Evidence, ProbitProce
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import HyperPrior
 
+APPROXIMATIONS = ("laplace", "both")
 ORDERED = np.ones(2, dtype=bool)
 KERNEL = MaternHammingKernel(np.full(2, 0.5), ORDERED)
 MIXED = np.array([True, True, False])
@@ -23,12 +26,14 @@ def fitted(n=40, seed=0):
     return ProbitProcess().fit(X, in_the_band(X), is_ordered=ORDERED)
 
 
+@pytest.mark.parametrize("approximation", ["laplace", "both"])
 @pytest.mark.parametrize("name", ["log_probability", "log_novelty"])
-def test_gradients_are_those_of_finite_differences_and_zero_along_categories(name) -> None:
+def test_gradients_are_those_of_finite_differences_and_zero_along_categories(name, approximation) -> None:
     rng = np.random.default_rng(1)
     X = rng.random((30, 3))
     X[:, 2] = np.round(X[:, 2])
-    posterior = ProbitProcess().fit(X, X[:, 0] + 0.3 * X[:, 2] > 0.6, is_ordered=MIXED)
+    model = ProbitProcess(approximation=approximation)
+    posterior = model.fit(X, X[:, 0] + 0.3 * X[:, 2] > 0.6, is_ordered=MIXED)
     at, h = rng.random((7, 3)), 1e-6
     at[:, 2] = 1.0
     value, gradient = getattr(posterior, f"{name}_with_gradient")(at)
@@ -145,3 +150,33 @@ def test_evidence_of_labels_is_the_negative_of_what_is_minimized() -> None:
     best = model._fit(start, minimized)
     assert model.evidence(X, labels, is_ordered=ORDERED)[0] == pytest.approx(-minimized(best)[0])
     assert minimized(best)[0] < minimized(start)[0]
+
+
+def test_both_approximations_together_are_the_more_cautious_and_say_less_of_a_corner_that_is_known_to_be_infeasible():
+    rng = np.random.default_rng(0)
+    X = np.vstack([rng.random((20, 2)), 0.04 * rng.random((30, 2))])
+    mode, both = (
+        ProbitProcess(approximation=a).fit(X, X.sum(axis=1) > 0.8, is_ordered=ORDERED) for a in APPROXIMATIONS
+    )
+    T = rng.random((500, 2))
+    assert np.all(both.log_probability(T) <= mode.log_probability(T))
+    corner = np.array([[0.02, 0.02]])
+    assert np.exp(both.log_probability(corner)) < 0.5 * np.exp(mode.log_probability(corner))
+    top = np.array([[0.95, 0.95]])
+    assert np.exp(both.log_probability(top)) > 0.8
+
+
+def test_the_moments_keep_a_doubt_of_what_no_evaluation_is_close_to() -> None:
+    X = np.vstack([0.3 * np.random.default_rng(0).random((20, 2)), [[0.35, 0.3]]])
+    both = ProbitProcess(approximation="both").fit(X, X[:, 0] > 0.34, is_ordered=ORDERED)
+    sure = replace(both.by_moments, doubt=0.0)
+    far, near = np.array([[1.0, 1.0]]), X[:1]
+    assert np.exp(both.by_moments.log_probability(far) - sure.log_probability(far)) > 1.01
+    assert both.by_moments.log_probability(near) == pytest.approx(sure.log_probability(near), abs=0.5)
+    np.testing.assert_array_less(sure.log_probability(X), both.by_moments.log_probability(X) + 1e-12)
+
+
+def test_where_nothing_is_feasible_yet_both_are_the_mode() -> None:
+    X, labels = np.random.default_rng(0).random((5, 2)), np.zeros(5, dtype=bool)
+    mode, both = (ProbitProcess(approximation=a).fit(X, labels, is_ordered=ORDERED) for a in APPROXIMATIONS)
+    np.testing.assert_array_equal(mode.log_probability(X), both.log_probability(X))
