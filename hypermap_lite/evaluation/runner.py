@@ -20,9 +20,10 @@ from hypermap_lite.evaluation.batch_plan import BatchPlan
 from hypermap_lite.evaluation.evaluator import EvaluationRequest, Evaluator
 from hypermap_lite.evaluation.executors import Executor
 from hypermap_lite.evaluation.observer import SAID_BY_COMMAND, FrontTracker, RunObserver, describe
-from hypermap_lite.evaluation.outcome import CONFIRM, EARLIER, Evaluation, Replicate, State, Suggestion
+from hypermap_lite.evaluation.outcome import CONFIRM, EARLIER, Evaluation, Replicate, Suggestion
 from hypermap_lite.evaluation.racing import Race
 from hypermap_lite.evaluation.seeds import replicate_seed
+from hypermap_lite.evaluation.streaks import failures_at_end, is_failure, is_too_long
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.optimizers.base import Optimizer
 from hypermap_lite.scenario.model import BudgetSpec, RacingSpec
@@ -74,7 +75,9 @@ class Runner:
     racing: RacingSpec | None = None
     """When the replicates of a configuration are stopped; None: never."""
 
-    max_consecutive_failures: int = 5
+    max_consecutive_failures: int | None = None
+    """So many configurations in a row without a usable result end the run; None: see `streaks.is_too_long`."""
+
     observer: RunObserver = field(default_factory=RunObserver)
     should_stop: Callable[[], bool] = lambda: False
     """Asked before every call; once true, running calls are waited for and no other is begun."""
@@ -97,7 +100,7 @@ class Runner:
 
     def set_failures_aside(self) -> None:
         """Have the failures at the end of an earlier session evaluated again; call it before `run`."""
-        if not self.folder.set_failures_aside() and any(map(_is_failure, self.folder.evaluations)):
+        if not self.folder.set_failures_aside() and any(map(is_failure, self.folder.evaluations)):
             logger.info("no failure is evaluated anew: only those after the last usable result are, and there is none")
 
     def run(self) -> StopReason:
@@ -106,7 +109,7 @@ class Runner:
         Raises
         ------
         RepeatedFailureError
-            If `max_consecutive_failures` configurations in a row failed or ran past the time limit.
+            If too many configurations in a row failed or ran past the time limit.
         ClientError
             If the client that evaluates breaks the protocol or is gone.
         NoValidEvaluationError
@@ -143,7 +146,7 @@ class Runner:
         for row in rows:
             self._front.add(row)
         # After a stop for failures the same command tries anew; after any other stop the count goes on.
-        self._failures = _failures_at_end(rows) % self.max_consecutive_failures
+        self._failures = failures_at_end(rows, self.optimizer.history.space, self.max_consecutive_failures)
         if rows or self.folder.replicates:
             n_calls = len(self.folder.replicates)
             logger.info("going on with %s: %d evaluations, %d calls are done", self.folder.path, len(rows), n_calls)
@@ -288,19 +291,20 @@ class Runner:
         front = self._front.add(evaluation)
         logger.info("%s", describe(evaluation, front))
         self.observer.on_evaluation(evaluation, front)
-        self._failures = self._failures + 1 if _is_failure(evaluation) else 0
+        self._failures = self._failures + 1 if is_failure(evaluation) else 0
         if not self.executor.is_one_call:
             self._check_failures()
 
     def _check_failures(self) -> None:
-        if self._failures >= self.max_consecutive_failures:
-            evaluation = self.folder.evaluations[-1]
+        rows, space = self.folder.evaluations, self.optimizer.history.space
+        if self._failures and is_too_long(rows, self._failures, space, self.max_consecutive_failures):
             raise RepeatedFailureError(
-                f"the last {self._failures} configurations gave no usable result: {evaluation.error}\n"
-                f"  logs: {self.folder.trial_folder(evaluation.trial)}\n"
+                f"the last {self._failures} configurations gave no usable result: {rows[-1].error}\n"
+                f"  logs: {self.folder.trial_folder(rows[-1].trial)}\n"
                 "  hint: Mend the evaluator and give the same command again with --retry-failed, which evaluates them "
-                "anew; without it they count. Or, if it fails because of the parameters, raise "
-                "evaluator.max_consecutive_failures; `check` says whether the search keeps away from where it failed."
+                "anew; without it they count. Or, if it fails because of the parameters, set "
+                "evaluator.max_consecutive_failures to more; `check` says whether the search keeps away from where it "
+                "failed."
             )
 
     def _require_result(self, reason: StopReason) -> None:
@@ -312,12 +316,3 @@ class Runner:
             f"none of the {len(rows)} evaluations gave a usable result{first}\n"
             f"  the run ended because {reason.value}\n  logs: {self.folder.path / 'trials'}"
         )
-
-
-def _is_failure(evaluation: Evaluation) -> bool:
-    return evaluation.state in (State.FAILED, State.TIMEOUT)
-
-
-def _failures_at_end(rows: Sequence[Evaluation]) -> int:
-    """Return how many of the last rows in a row are failures."""
-    return next((n for n, row in enumerate(reversed(rows)) if not _is_failure(row)), len(rows))

@@ -150,8 +150,9 @@ class EvaluatorSpec:
     workers: int = 1
     """Calls at the same time; does not change the results."""
 
-    max_consecutive_failures: int = 5
-    """The run stops (exit status 4) after so many configurations in a row without a usable result."""
+    max_consecutive_failures: int | None = None
+    """The run stops (exit status 4) after so many configurations in a row without a usable result; None: after 5, or up
+    to 20 where their parameters explain it."""
 
     @property
     def is_client(self) -> bool:

@@ -172,7 +172,7 @@ def test_hints_of_a_run_that_keeps_failing_can_be_followed(tmp_path, capsys):
     assert run(path) == 4
     error = capsys.readouterr().err
     assert "--retry-failed" in error
-    assert "raise evaluator.max_consecutive_failures" in error
+    assert "set evaluator.max_consecutive_failures to more" in error
     assert run(path, "--set", "evaluator.max_consecutive_failures=7") == 4
     assert len(history(tmp_path / "run")) == 7
 
