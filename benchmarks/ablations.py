@@ -33,6 +33,8 @@ ABLATIONS: Mapping[str, Sequence[str]] = {
 OF_FEASIBILITY: Mapping[str, Sequence[str]] = {
     "infeasible values ignored": ("surrogate.learn_infeasible=false",),
     "feasibility to the first power": ("acquisition.feasibility_weighting.exponent=1",),
+    "feasibility by the mode": ("acquisition.feasibility_weighting.approximation=laplace",),
+    "first feasible by the classifier": ("acquisition.feasibility_weighting.first_feasible=classifier",),
 }
 OF_TAILS: Mapping[str, Sequence[str]] = {"tails as they are": ("surrogate.compress_tails=false",)}
 OF_OUTLIERS: Mapping[str, Sequence[str]] = {"outliers believed": ("surrogate.ignore_outliers=false",)}

@@ -36,7 +36,8 @@ deviation of each objective over the box, by 16,384 Sobol points, and on the emu
 an evaluation. CPU and wall-clock seconds of one suggestion, fit included: medians over the run, then over the seeds;
 one thread of linear algebra. Largest hypervolumes of VehicleSafety, Penicillin, BraninCurrin (both) and C2-DTLZ2 are
 published approximations, so a share may pass 1 by a little. Of problems called "failing" one evaluation in twenty comes
-out as bad as can be, whatever its point, and counts so. The best mean of a problem is in bold."""
+out as bad as can be, whatever its point, and counts so. Until a point is feasible, the regret is that
+of the worst value of the box. The best mean of a problem is in bold."""
 
 
 class Asked(Protocol):

@@ -61,11 +61,12 @@ def quality(problem: Problem, Y: FloatArray, is_feasible: list[bool]) -> FloatAr
     Returns
     -------
     FloatArray
-        Shape (n,): log10 of the regret of the best value, at least -12; with several objectives, the share of the
-        largest hypervolume.
+        Shape (n,): log10 of the regret of the best value, at least -12, as of the worst one until a point is allowed;
+        with several objectives, the share of the largest hypervolume.
     """
     if problem.reference_point is None:
-        regret = np.minimum.accumulate(Y[:, 0]) - problem.best
+        values = Y[:, 0] if problem.is_feasible is None else np.where(is_feasible, Y[:, 0], problem.worst[0])
+        regret = np.minimum.accumulate(values) - problem.best
         return np.log10(np.maximum(regret, SMALLEST_REGRET))
     Y = np.where(np.array(is_feasible)[:, None], Y, np.nan)
     return hypervolume_trace(Y, np.array(problem.reference_point)) / problem.best

@@ -9,13 +9,17 @@ from .base import Problem
 from .constrained import CONSTRAINED
 from .emulated import EMULATED
 from .failing import FAILING
+from .limits import LIMITS
 from .many import MANY
 from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
 from .tails import TAILS
 
-__all__ = ["CONSTRAINED", "EMULATED", "FAILING", "MANY", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS", "Problem"]
+__all__ = [
+    *("CONSTRAINED", "EMULATED", "FAILING", "LIMITS", "MANY", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS"),
+    "Problem",
+]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
 
@@ -23,6 +27,7 @@ PROBLEMS: Mapping[str, Problem] = {
     **SINGLE,
     **SEVERAL,
     **CONSTRAINED,
+    **LIMITS,
     **SKILLS,
     **TAILS,
     **FAILING,

@@ -28,7 +28,7 @@ class FeasibilityWeighting:
     It says nothing as long as all evaluations have been feasible. The power 1 is the expected utility. It is too bold
     where much is to be gained beyond the boundary, for of all points those are chosen whose probability is
     overestimated most: on Chankong and Haimes' problem an eighth of what expected hypervolume improvement chose was
-    feasible. A larger power trusts less.
+    feasible. A larger power trusts less: 3 is for several objectives, one asks for more, see `scenario.defaults`.
 
     References
     ----------

@@ -17,6 +17,15 @@ MIN_SAMPLES = 6
 SCALARIZING: Final = "noisy_expected_improvement"
 """Acquisition function where a scalarization or its weights are given, and no type."""
 
+EXPONENT_OF_ONE: Final = 8.0
+"""Power of the probability of being feasible where there is one objective.
+
+Close to its optimum there is next to nothing to be gained where it is feasible, and much where it hardly can be.
+"""
+
+EXPONENT_OF_SEVERAL: Final = 3.0
+"""The same with several objectives: larger powers miss feasible regions, and the ends of fronts along a boundary."""
+
 BEGINNING: Final[Mapping[str, str]] = {"local_search": "random_points", "evolutionary": "population_size"}
 """Optimizers that begin with a number of points of their own, and the option that says how many."""
 
@@ -61,6 +70,11 @@ def fill_derived(document: Mapping[str, Any]) -> dict[str, Any]:
     if design["number_of_samples"] is None:
         design["number_of_samples"] = default_samples(document)
     derived["design_of_experiment"] = design
+    acquisition = derived["acquisition"]
+    weighting = acquisition["feasibility_weighting"]
+    if "exponent" in weighting and weighting["exponent"] is None:
+        exponent = EXPONENT_OF_ONE if len(document["objectives"]) == 1 else EXPONENT_OF_SEVERAL
+        derived["acquisition"] = {**acquisition, "feasibility_weighting": {**weighting, "exponent": exponent}}
     directory = document["output"]["directory"] or f"outputs/{document['application_name']}"
     derived["output"] = {**document["output"], "directory": directory}
     return derived

@@ -186,6 +186,9 @@ def _budget(scenario: Scenario, space: SearchSpace | None) -> Iterator[tuple[str
     ] >= evaluations:
         text = f"{begins_with} takes all {evaluations} evaluations; {scenario.optimizer.type} never begins."
         yield "$.budget.evaluations", text
+    if evaluations < scenario.budget.batch_size:
+        text = f"a batch is more than the {evaluations} evaluations of the budget; all are chosen without a result."
+        yield "$.budget.batch_size", text
     size = math.prod(_n_levels(p) for p in scenario.parameters) if space is None else space.n_configurations
     if size < evaluations:
         yield "$.budget.evaluations", f"there are only {size:.0f} configurations; the run ends after them."

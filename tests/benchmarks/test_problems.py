@@ -47,6 +47,29 @@ def grid(name, n):
     return PROBLEMS[name].points(np.column_stack([u.ravel() for u in np.meshgrid(axis, axis)]))
 
 
+@pytest.mark.parametrize(
+    ("name", "minimizer", "share"),
+    [
+        ("gramacy", (0.1951226886, 0.4046653634), 0.457),
+        ("simionescu", (0.72**0.5, -(0.72**0.5)), 0.512),
+        ("branin_disk", (math.pi, 2.275), 0.698),
+        ("sum_beyond2", (0.3, 0.5), 0.679),
+        ("sum_beyond5", (0.3, 0.4, 0.5, 0.4, 0.4), 0.775),
+        ("tension_spring", (0.0516890, 0.3567177, 11.2889654), 0.016),
+        ("hartmann6_ball", tuple(HARTMANN6_MINIMIZER), 0.0805),
+    ],
+)
+def test_minimum_within_limits_is_where_it_is_said_to_be_and_allowed(name, minimizer, share):
+    problem = PROBLEMS[name]
+    x, X = np.array([minimizer]), points(name, 100_000)
+    assert problem.function(x)[0, 0] == pytest.approx(problem.best, abs=2e-6)
+    near = x + 2e-4 * np.random.default_rng(0).standard_normal((1000, problem.dimension)) * np.ptp(X, axis=0)
+    assert problem.is_feasible(near).any()
+    is_allowed = problem.is_feasible(X)
+    assert is_allowed.mean() == pytest.approx(share, abs=0.002)
+    assert problem.function(X[is_allowed]).min() >= problem.best
+
+
 @pytest.mark.parametrize("name", MINIMIZERS)
 def test_function_is_smallest_where_it_is_said_to_be(name):
     problem = PROBLEMS[name]

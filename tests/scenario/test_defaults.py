@@ -62,3 +62,18 @@ def test_a_uniform_prior_with_a_range_says_something(end: str) -> None:
     ranged["input_parameters"]["x"]["prior"] = {"type": "uniform", end: 0}
     assert has_priors(ranged)
     assert filled(input_parameters=ranged["input_parameters"])["design_of_experiment"]["type"] == "prior_sampling"
+
+
+@pytest.mark.parametrize(("n", "given", "exponent"), [(1, None, 8), (2, None, 3), (3, None, 3), (1, 2.5, 2.5)])
+def test_the_power_of_the_probability_of_being_feasible_follows_from_the_number_of_objectives(
+    n: int, given: float | None, exponent: float
+) -> None:
+    document = copy.deepcopy(GOOD) | {"objectives": [{"name": f"f{k}"} for k in range(n)]}
+    document["acquisition"] = {"feasibility_weighting": {"exponent": given}}
+    filled = fill_derived(fill(root_schema(), document))
+    assert filled["acquisition"]["feasibility_weighting"]["exponent"] == exponent
+
+
+def test_without_the_probability_of_being_feasible_there_is_no_power() -> None:
+    document = copy.deepcopy(GOOD) | {"acquisition": {"feasibility_weighting": {"method": "none"}}}
+    assert "exponent" not in fill_derived(fill(root_schema(), document))["acquisition"]["feasibility_weighting"]

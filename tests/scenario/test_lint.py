@@ -132,6 +132,12 @@ def test_a_budget_of_the_design_alone_fits_no_model() -> None:
     assert warnings(budget={"evaluations": 6}, optimizer="random_search") == []
 
 
+@pytest.mark.parametrize(("size", "is_odd"), [(12, False), (13, True)])
+def test_a_batch_larger_than_the_budget_is_named(size: int, is_odd: bool) -> None:
+    found = warnings(budget={"evaluations": 12, "batch_size": size})
+    assert any(w.startswith("$.budget.batch_size: a batch is more than the 12") for w in found) == is_odd
+
+
 def test_a_space_smaller_than_the_budget_is_named() -> None:
     n = {"parameter_type": "integer", "values": [1, 4]}
     (warning,) = warnings(input_parameters={"n": n, "mode": CLEAN["input_parameters"]["mode"]})
