@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
@@ -30,7 +31,13 @@ def is_failure(evaluation: Evaluation) -> bool:
     return evaluation.state in (State.FAILED, State.TIMEOUT)
 
 
-def is_too_long(rows: Sequence[Evaluation], n: int, space: SearchSpace, limit: int | None = None) -> bool:
+def is_too_long(
+    rows: Sequence[Evaluation],
+    n: int,
+    space: SearchSpace,
+    limit: int | None = None,
+    known: dict[int, float] | None = None,
+) -> bool:
     """Tell whether the last n rows, all of them failures, are too many in a row.
 
     Parameters
@@ -43,32 +50,38 @@ def is_too_long(rows: Sequence[Evaluation], n: int, space: SearchSpace, limit: i
         Of their parameters.
     limit
         So many are; None: `USUAL`, if it is unlikely that where they were explains them, and `MOST` in any case.
+    known
+        Probabilities of failures by their positions, to which those worked out here are added.
     """
     if limit is not None:
         return n >= limit
     if n < USUAL or n >= MOST or all(map(is_failure, rows[: len(rows) - n])):
         return n >= USUAL
-    return chance_by_parameters(rows, n, space) < CHANCE
+    return chance_by_parameters(rows, n, space, known) < CHANCE
 
 
-def chance_by_parameters(rows: Sequence[Evaluation], n: int, space: SearchSpace) -> float:
+def chance_by_parameters(
+    rows: Sequence[Evaluation], n: int, space: SearchSpace, known: dict[int, float] | None = None
+) -> float:
     """Return the probability that the last n rows all fail, each foretold by where those before it failed."""
+    known = {} if known is None else known
     X = space.encode([row.configuration for row in rows])
     is_usable = ~np.array([is_failure(row) for row in rows])
-    chance = 1.0
     for i in range(len(rows) - n, len(rows)):
-        posterior = ProbitProcess().fit(
-            X[:i], is_usable[:i], is_ordered=space.is_ordered, permutations=space.permutations
-        )
-        chance *= -float(np.expm1(posterior.log_probability(X[[i]])[0]))
-    return chance
+        if i not in known:
+            posterior = ProbitProcess().fit(
+                X[:i], is_usable[:i], is_ordered=space.is_ordered, permutations=space.permutations
+            )
+            known[i] = -float(np.expm1(posterior.log_probability(X[[i]])[0]))
+    return math.prod(known[i] for i in range(len(rows) - n, len(rows)))
 
 
 def failures_at_end(rows: Sequence[Evaluation], space: SearchSpace, limit: int | None = None) -> int:
     """Return how many of the last rows are failures in a row, since the run was last stopped for them."""
-    n = 0
-    for i, row in enumerate(rows):
-        n = n + 1 if is_failure(row) else 0
-        if n and is_too_long(rows[: i + 1], n, space, limit):
+    n, known = 0, dict[int, float]()
+    first = max((i + 1 for i, row in enumerate(rows) if not is_failure(row)), default=0)
+    for end in range(first + 1, len(rows) + 1):
+        n += 1
+        if is_too_long(rows[:end], n, space, limit, known):
             n = 0
     return n

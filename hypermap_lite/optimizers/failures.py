@@ -61,14 +61,16 @@ class SeparateModels:
         if n is None:
             self._announce(failures)
         if failures not in self._models:
-            told_apart = None
-            if failures is not None:
+            told_apart, weighting = None, self._feasibility_weighting
+            if failures is not None and weighting is not None:
+                # by the approximation that told them apart; both together gained nothing on skills
+                weighting = replace(weighting, approximation="laplace")
                 history = History(history.space, history.objectives, in_order=history.in_order)
                 told_apart = ToldApart(objective=failures.objective, trials=set())
             models = Models(
                 history,
                 self._surrogate,
-                self._feasibility_weighting,
+                weighting,
                 self._seed,
                 failures=told_apart,
                 announced=self._announced,

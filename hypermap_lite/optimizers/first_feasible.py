@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from hypermap_lite.acquisition.base import Scorer
-from hypermap_lite.design.sobol import OVERSAMPLING, sobol_points
+from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.optimizers.guidance import Guidance
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.space.search_space import SearchSpace
@@ -16,6 +16,9 @@ from hypermap_lite.typing import FloatArray
 WINDOW: Final = 32
 """Points of a sequence among which is chosen."""
 
+LONGEST: Final = 2**15
+"""Points of the sequence that are looked at, or a little more, where constraints reject most of them."""
+
 TURN: Final = 2
 """Every so many suggestions the first point left has its turn, where no prior takes part."""
 
@@ -23,12 +26,15 @@ TURN: Final = 2
 def points_left(space: SearchSpace, seed: int, taken: list[bytes]) -> FloatArray:
     """Return the first points of the design's Sobol sequence that are not taken, shape (k, d), k <= `WINDOW`.
 
-    None where the space holds no other, or constraints leave next to nothing of it.
+    Fewer where the space holds few others, or constraints allow less than one in a thousand of `LONGEST` points.
     """
     n = len(taken) + WINDOW
-    U = sobol_points(n * OVERSAMPLING if space.constraints else n, space.dimension, generator(seed, Stream.DESIGN))
-    X = space.keep_allowed(space.snap(U))
-    return X[space.unseen(X, taken)][:WINDOW]
+    while True:
+        X = space.keep_allowed(space.snap(sobol_points(n, space.dimension, generator(seed, Stream.DESIGN))))
+        left = X[space.unseen(X, taken)][:WINDOW]
+        if len(left) == WINDOW or not space.constraints or n >= LONGEST:
+            return left
+        n *= 4
 
 
 def is_in_turn(trial: int, guidance: Guidance) -> bool:

@@ -12,7 +12,7 @@ from hypermap_lite.surrogates.linear_algebra import safe_cholesky, solve_lower
 from hypermap_lite.typing import FloatArray
 
 MAX_STEPS: Final = 200
-"""Updates of all sites; a few dozen are usual."""
+"""Updates of all sites; twenty are usual, a hundred where one label in many differs and lengthscales are long."""
 
 DAMPING: Final = 0.8
 """Share of an update that is made. Whole ones of all sites at once may swing for ever where labels are sharp."""

@@ -14,6 +14,7 @@ from hypermap_lite.evaluation.streaks import MOST, USUAL, chance_by_parameters, 
 from hypermap_lite.scenario.model import BudgetSpec
 from hypermap_lite.space.real import RealParameter
 from hypermap_lite.space.search_space import SearchSpace
+from hypermap_lite.surrogates.feasibility import ProbitProcess
 from tests.evaluation.examples import ScriptedOptimizer, folder
 
 SPACE = SearchSpace(tuple(RealParameter(name=name, low=0.0, high=1.0) for name in "ab"))
@@ -77,6 +78,15 @@ def test_infeasible_evaluations_are_results() -> None:
     assert failures_at_end(rows, SPACE) == 0
 
 
+def test_only_the_last_streak_is_looked_at_and_each_failure_once(monkeypatch) -> None:
+    fits = []
+    fit = ProbitProcess.fit
+    monkeypatch.setattr(ProbitProcess, "fit", lambda self, X, *a, **k: fits.append(len(X)) or fit(self, X, *a, **k))
+    X = np.vstack([SPREAD, BELOW[:9], [[0.9, 0.9]], BELOW[10:19]])
+    assert failures_at_end(rows_of(X, by_region(X)), SPACE) == 9
+    assert fits == [*range(34, 43)]
+
+
 def test_after_a_stop_for_failures_the_count_begins_anew_and_else_goes_on() -> None:
     assert failures_at_end(broken(USUAL), SPACE) == 0
     assert failures_at_end(broken(USUAL + 2), SPACE) == 2
@@ -110,19 +120,20 @@ def run(path, is_bad, n):
         ).run()
 
 
-def n_rows(path) -> int:
+def configurations(path) -> list[tuple[str, str]]:
     with (path / "history.csv").open() as file:
-        return len(list(csv.DictReader(file)))
+        return [(row["x"], row["state"]) for row in csv.DictReader(file)]
 
 
 def test_a_run_ends_five_failures_after_its_evaluator_broke(tmp_path) -> None:
     with pytest.raises(RepeatedFailureError, match="last 5 configurations"):
         run(tmp_path, lambda trial, _: trial >= 20, 60)
-    assert n_rows(tmp_path) == 25
+    assert len(configurations(tmp_path)) == 25
 
 
 def test_a_run_with_a_streak_that_its_parameters_explain_goes_on_and_may_be_resumed_within(tmp_path) -> None:
     assert run(tmp_path / "whole", lambda _, x: x > 0.6, 60) is StopReason.BUDGET
     for n in (33, 37, 60):
         run(tmp_path / "parts", lambda _, x: x > 0.6, n)
-    assert n_rows(tmp_path / "whole") == n_rows(tmp_path / "parts") == 60
+    assert configurations(tmp_path / "whole") == configurations(tmp_path / "parts")
+    assert len(configurations(tmp_path / "whole")) == 60

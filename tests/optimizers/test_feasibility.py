@@ -14,6 +14,7 @@ from hypermap_lite.assembly import build_optimizer
 from hypermap_lite.design.sobol import Sobol
 from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
 from hypermap_lite.optimizers import Optimizer
+from hypermap_lite.optimizers.first_feasible import WINDOW, points_left
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.hypervolume import hypervolume
 from hypermap_lite.priors.product import ProductPrior
@@ -210,6 +211,17 @@ def test_where_the_sequence_has_nothing_left_the_search_goes_on() -> None:
     )
     optimizer = all_infeasible(scenario, 31)
     assert sorted(int(e.configuration["n"]) for e in optimizer.history) == [*range(31)]
+    assert "random" in [e.suggestion.phase for e in optimizer.history]
+
+
+def test_where_constraints_leave_little_of_the_space_the_sequence_is_followed_as_far_as_it_takes() -> None:
+    scenario = scenario_of(constraints=["a + b <= 0.2"], budget={"evaluations": 30})
+    scenario["input_parameters"] = {n: {"parameter_type": "real", "values": [0, 1]} for n in "ab"}
+    optimizer = all_infeasible(scenario, 30)
+    phases = [e.suggestion.phase for e in optimizer.history]
+    n_design = phases.count("design")
+    assert phases[n_design:] == [("random" if t % 2 else "model") for t in range(n_design, 30)]
+    assert len(points_left(optimizer.history.space, 3, optimizer.taken_keys())) == WINDOW
 
 
 def test_the_first_feasible_point_is_found_sooner_than_by_chance() -> None:
