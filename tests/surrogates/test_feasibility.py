@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hypermap_lite.surrogates.feasibility import MAX_ROWS, Evidence, ProbitProcess, telling_rows
+from hypermap_lite.surrogates.feasibility import MAX_ROWS, Evidence, ProbitProcess
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import HyperPrior
+from hypermap_lite.surrogates.telling_rows import telling_rows
 
 APPROXIMATIONS = ("laplace", "both")
 ORDERED = np.ones(2, dtype=bool)
