@@ -22,7 +22,7 @@ from hypermap_lite.priors import JOINT_PRIORS, PRIORS
 from hypermap_lite.priors.beta import SHAPES
 from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS
 from hypermap_lite.scenario.building import EVALUATOR_KEYS
-from hypermap_lite.scenario.defaults import fill
+from hypermap_lite.scenario.defaults import EXPONENT_OF_SEVERAL, fill
 from hypermap_lite.scenario.hypermapper import is_hypermapper
 from hypermap_lite.scenario.model import BudgetSpec, EvaluatorSpec, ParameterSpec, Scenario
 from hypermap_lite.scenario.schemas import (
@@ -170,12 +170,19 @@ def test_the_names_are_those_of_the_family(section: str, names: set[str]) -> Non
     assert set(schema["properties"][key]["enum"]) == names | without_one
 
 
+DERIVED = {"feasibility_weighting": {"exponent": EXPONENT_OF_SEVERAL}}
+"""Options that follow from other keys where they are null, and what they are with several objectives."""
+
+
 @pytest.mark.parametrize(("section", "kind", "member"), MEMBERS)
 def test_the_options_and_defaults_are_those_of_the_member(section: str, kind: str, member: type) -> None:
     schema = schema_of(section)
     around = (kind_key(schema), *AROUND.get(section, ()))
     options = properties_of(schema, {kind_key(schema): kind})
     stated = {key: sub.get("default") for key, sub in options.items() if key not in around}
+    for key, value in DERIVED.get(section, {}).items():
+        assert stated[key] is None
+        stated[key] = value
     assert stated == fields_of(member)
 
 
