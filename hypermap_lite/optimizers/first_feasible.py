@@ -46,11 +46,11 @@ def is_in_turn(trial: int, guidance: Guidance) -> bool:
 def choose(left: FloatArray, scorer: Scorer, *, in_turn: bool) -> tuple[FloatArray, float | None]:
     """Return the next point of a search for the first feasible one, shape (d,), and its score, if that was asked.
 
-    By turns the most promising of the points left of a Sobol sequence and the first of them. What a model
-    takes for promising, the middle of the largest unknown regions, is never close to a bound of the space, nor does
-    it fill the space along each axis by itself, as the sequence does: of a feasible region in four percent of one axis
-    it found none with 50 evaluations and 24 seeds, and the sequence took 8. So each point has its turn, in at most
-    twice the time.
+    By turns the most promising of the points left of a Sobol sequence and the first of them. What a model takes for
+    promising, the middle of the largest unknown regions, is never close to a bound of the space, nor does it fill the
+    space along each axis by itself, as the sequence does: a feasible region of four percent at the end of one axis was
+    found in none of 24 runs of 50 evaluations, and the sequence took 8. So each point has its turn: without a prior, in
+    at most twice the time.
 
     Evaluations after the design to the first feasible one, means over 24 seeds whose design has none; by the model
     alone, by turns, in order:
