@@ -63,17 +63,24 @@ def is_too_long(
 def chance_by_parameters(
     rows: Sequence[Evaluation], n: int, space: SearchSpace, known: dict[int, float] | None = None
 ) -> float:
-    """Return the probability that the last n rows all fail, each foretold by where those before it failed."""
+    """Return the probability that the last n rows all fail, each foretold by where those before it failed.
+
+    Failures in the same row of them that were too many already do not count among those: what broke an evaluator says
+    nothing of the parameters, and is no excuse when the run is called again without a mend.
+    """
     known = {} if known is None else known
     X = space.encode([row.configuration for row in rows])
     is_usable = ~np.array([is_failure(row) for row in rows])
-    for i in range(len(rows) - n, len(rows)):
+    start = len(rows) - n
+    first = int(np.flatnonzero(is_usable[:start]).max(initial=-1)) + 1
+    for i in range(start, len(rows)):
         if i not in known:
+            told = np.r_[:first, start:i]
             posterior = ProbitProcess().fit(
-                X[:i], is_usable[:i], is_ordered=space.is_ordered, permutations=space.permutations
+                X[told], is_usable[told], is_ordered=space.is_ordered, permutations=space.permutations
             )
             known[i] = -float(np.expm1(posterior.log_probability(X[[i]])[0]))
-    return math.prod(known[i] for i in range(len(rows) - n, len(rows)))
+    return math.prod(known[i] for i in range(start, len(rows)))
 
 
 def failures_at_end(rows: Sequence[Evaluation], space: SearchSpace, limit: int | None = None) -> int:

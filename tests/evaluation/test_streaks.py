@@ -94,6 +94,12 @@ def test_after_a_stop_for_failures_the_count_begins_anew_and_else_goes_on() -> N
     assert failures_at_end(in_region(7), SPACE, limit=5) == 2
 
 
+def test_failures_that_ended_a_run_do_not_explain_those_of_the_next_call() -> None:
+    near_each_other = rows_of(np.vstack([SPREAD, BELOW[:15]]), [State.COMPLETED] * 24 + [State.FAILED] * 15)
+    for rows in (near_each_other, broken(15)):
+        assert [failures_at_end(rows[: 24 + n], SPACE) for n in (4, 5, 9, 10, 14, 15)] == [4, 0, 4, 0, 4, 0]
+
+
 class Probing(ScriptedOptimizer):
     """Suggests points all over [-2, 2], but trials 30 to 39 in [0.8, 1.2]."""
 
