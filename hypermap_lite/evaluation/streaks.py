@@ -9,14 +9,9 @@ from typing import Final
 import numpy as np
 
 from hypermap_lite.evaluation.outcome import Evaluation, State
+from hypermap_lite.scenario.model import MOST_FAILURES, USUAL_FAILURES
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.surrogates.feasibility import ProbitProcess
-
-USUAL: Final = 5
-"""Failures in a row that end a run, unless their parameters explain them."""
-
-MOST: Final = 20
-"""Failures in a row that end a run in any case."""
 
 CHANCE: Final = 0.002
 """Of so many failures in a row by their parameters alone, below which the evaluator counts as broken.
@@ -49,14 +44,15 @@ def is_too_long(
     space
         Of their parameters.
     limit
-        So many are; None: `USUAL`, if it is unlikely that where they were explains them, and `MOST` in any case.
+        So many are; None: `USUAL_FAILURES`, if it is unlikely that where they were explains them, and
+        `MOST_FAILURES` in any case.
     known
         Probabilities of failures by their positions, to which those worked out here are added.
     """
     if limit is not None:
         return n >= limit
-    if n < USUAL or n >= MOST or all(map(is_failure, rows[: len(rows) - n])):
-        return n >= USUAL
+    if n < USUAL_FAILURES or n >= MOST_FAILURES or all(map(is_failure, rows[: len(rows) - n])):
+        return n >= USUAL_FAILURES
     return chance_by_parameters(rows, n, space, known) < CHANCE
 
 

@@ -8,13 +8,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.objectives import FeasibleOutput, Objective
 from hypermap_lite.scenario.defaults import is_belief
 from hypermap_lite.scenario.sources import Layer, folders_of, located, origin_of
 from hypermap_lite.typing import Level, Value
+
+USUAL_FAILURES: Final = 5
+"""Failures in a row that end a run, unless their parameters explain them; see `evaluation.streaks`."""
+
+MOST_FAILURES: Final = 20
+"""Failures in a row that end a run in any case."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,7 +7,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from hypermap_lite.objectives import MAX_CLOSED_FORM
-from hypermap_lite.scenario.model import ComponentSpec, ObjectivePriors, OutputSpec, ParameterSpec, Scenario
+from hypermap_lite.scenario.model import (
+    MOST_FAILURES,
+    USUAL_FAILURES,
+    ComponentSpec,
+    ObjectivePriors,
+    OutputSpec,
+    ParameterSpec,
+    Scenario,
+)
 from hypermap_lite.space.real import FEWEST_CHECKED
 from hypermap_lite.typing import as_argument
 
@@ -45,7 +53,7 @@ def summarize(scenario: Scenario) -> str:
         "earlier": _earlier(scenario),
         "method": _method(scenario),
         "budget": [_budget(scenario)],
-        "evaluator": [_evaluator(scenario)],
+        "evaluator": [_evaluator(scenario), *_failures(scenario)],
         "output": [text for text in _output(scenario.output) if text],
     }
     return "\n".join(f"{heading:<12}" + f"\n{INDENT}".join(lines) for heading, lines in sections.items() if lines)
@@ -170,7 +178,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append("infeasible evaluations: not in the acquisition (feasibility_weighting is none)")
     else:
         if scenario.feasible_output is not None:
-            lines.append("acquisition weighted by the probability of being feasible")
+            power = acquisition.feasibility_weighting.options["exponent"]
+            lines.append(f"acquisition weighted by the probability of being feasible, to the power {power:g}")
         if acquisition.feasibility_weighting.options.get("learn_failed"):
             lines.append("evaluations that fail or run out of time keep the search away from where they were")
     if scenario.feasible_output is not None and scenario.surrogate.options.get("learn_infeasible"):
@@ -264,6 +273,15 @@ def _evaluator(scenario: Scenario) -> str:
     if racing is not None:
         calls = f"{racing.minimum} to {calls} by racing (alpha={racing.alpha:g})"
     return f"{what}; calls: {calls} per configuration, {evaluator.workers} at a time, {limit}"
+
+
+def _failures(scenario: Scenario) -> list[str]:
+    """Say when failures end the run."""
+    n = scenario.evaluator.max_consecutive_failures
+    if scenario.evaluator.component is None:
+        return []
+    late = f" ({MOST_FAILURES} where their parameters explain them)" if n is None else ""
+    return [f"the run ends after {USUAL_FAILURES if n is None else n} failures in a row{late}"]
 
 
 def _component(spec: ComponentSpec) -> str:

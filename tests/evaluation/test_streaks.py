@@ -10,7 +10,9 @@ from hypermap_lite.errors import RepeatedFailureError
 from hypermap_lite.evaluation.executors import InProcessExecutor
 from hypermap_lite.evaluation.outcome import Evaluation, Outcome, State, Suggestion
 from hypermap_lite.evaluation.runner import Runner, StopReason
-from hypermap_lite.evaluation.streaks import MOST, USUAL, chance_by_parameters, failures_at_end, is_too_long
+from hypermap_lite.evaluation.streaks import chance_by_parameters, failures_at_end, is_too_long
+from hypermap_lite.scenario.model import MOST_FAILURES as MOST
+from hypermap_lite.scenario.model import USUAL_FAILURES as USUAL
 from hypermap_lite.scenario.model import BudgetSpec
 from hypermap_lite.space.real import RealParameter
 from hypermap_lite.space.search_space import SearchSpace

@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 from typing import Any
 
+import pytest
+
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.summary import summarize
 from tests.scenario.bad_scenarios import GOOD
@@ -78,7 +80,7 @@ def test_unused_priors_are_said_to_be_so() -> None:
 def test_the_feasibility_has_a_line_and_a_part_in_the_method() -> None:
     text = page(feasible_output={"name": "fits", "true_value": "1", "false_value": "0"})
     assert "feasibility fits: 1 or 0\n" in text
-    assert "acquisition weighted by the probability of being feasible" in text
+    assert "acquisition weighted by the probability of being feasible, to the power 3" in text
     assert "objective values of infeasible evaluations inform the model" in text
     for surrogate in ({"learn_infeasible": False}, "random_forest"):
         assert "inform the model" not in page(feasible_output={"name": "fits"}, surrogate=surrogate)
@@ -86,6 +88,19 @@ def test_the_feasibility_has_a_line_and_a_part_in_the_method() -> None:
         acquisition={"feasibility_weighting": "none"}
     )
     assert "feasib" not in page()
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({}, "5 failures in a row (20 where their parameters explain them)"),
+        ({"max_consecutive_failures": 2}, "2 failures in a row\n"),
+    ],
+)
+def test_failures_in_a_row_have_a_line(given, line) -> None:
+    command = {"type": "command", "command": ["true", "{x}"]}
+    assert f"            the run ends after {line}" in page(evaluator=command | given)
+    assert "failures in a row" not in page()
 
 
 def test_compressed_tails_have_a_line() -> None:
