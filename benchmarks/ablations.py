@@ -4,9 +4,6 @@ A variant is a list of changes to the scenario, as `--set` takes them; each chan
 `OF_FEASIBILITY` holds those that change nothing without an unknown constraint, `OF_TAILS` those that change next to
 nothing without values far beyond the rest, `OF_OUTLIERS` those that matter where evaluations fail without a reason,
 `OF_FAILURES` where they fail with one.
-
-The rows of `ABLATIONS` were measured before outliers were set aside and failures told apart, so what they are to be
-compared with is "outliers believed", which is to the last digit the default of then.
 """
 
 from __future__ import annotations
@@ -35,6 +32,7 @@ OF_FEASIBILITY: Mapping[str, Sequence[str]] = {
     "feasibility to the first power": ("acquisition.feasibility_weighting.exponent=1",),
     "feasibility by the mode": ("acquisition.feasibility_weighting.approximation=laplace",),
     "first feasible by the classifier": ("acquisition.feasibility_weighting.first_feasible=classifier",),
+    "next feasible by the classifier": ("acquisition.feasibility_weighting.next_feasible=classifier",),
 }
 OF_TAILS: Mapping[str, Sequence[str]] = {"tails as they are": ("surrogate.compress_tails=false",)}
 OF_OUTLIERS: Mapping[str, Sequence[str]] = {"outliers believed": ("surrogate.ignore_outliers=false",)}

@@ -48,6 +48,10 @@ class FeasibilityWeighting:
     """Among what points the first feasible one is looked for: those of a Sobol sequence, each of which has its turn, or
     all, where the classifier leads; see `optimizers.first_feasible`."""
 
+    next_feasible: Literal["near", "classifier"] = "near"
+    """Where the next ones are looked for while there are one or two: next to them, or where the classifier leads; see
+    `optimizers.next_feasible`."""
+
     def __post_init__(self) -> None:
         if not self.exponent > 0:
             raise ScenarioError("$.exponent", f"the power is {self.exponent}", allowed="a number > 0")

@@ -13,6 +13,7 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.acquisition.feasibility_weighting.approximation": '"laplace"',
     "$.acquisition.feasibility_weighting.learn_failed": "false",
     "$.acquisition.feasibility_weighting.first_feasible": '"classifier"',
+    "$.acquisition.feasibility_weighting.next_feasible": '"classifier"',
     "$.acquisition.prior_weighting.make_up": "false",
     "$.acquisition.prior_weighting.prior_free": "0",
     "$.acquisition.prior_weighting.safeguard": "false",

@@ -26,6 +26,7 @@ from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.models import MIN_COMPLETED, Models
+from hypermap_lite.optimizers.next_feasible import attempt, draw_near
 from hypermap_lite.optimizers.stagnation import NEXT_TO_NOTHING, draws_at_end, is_in_the_dark, stands_still
 from hypermap_lite.optimizers.streams import Stream, generator
 from hypermap_lite.pareto.ranking import crowding_distances, non_dominated_ranks
@@ -138,6 +139,8 @@ class BayesianOptimizer(Optimizer):
             drawn = self._drawn_anywhere(trial, guidance)
             if drawn is not None:
                 return drawn
+        if not guidance.weight and (x := self._near_feasible(rng)) is not None:
+            return self._told_of(guidance, trial, x, RANDOM, None)
         if has_objectives:
             return self._with_model(trial, rng, feasibility, guidance)
         if feasibility is not None:
@@ -156,6 +159,15 @@ class BayesianOptimizer(Optimizer):
         if weight and self._method.prior_weighting is not None:
             scorer = self._method.prior_weighting.weigh(scorer, guidance.belief.prior, weight)
         return self._by_score(scorer, known.X(), trial, rng, guidance)
+
+    def _near_feasible(self, rng: Rng) -> FloatArray | None:
+        """Return a draw next to one of the first feasible points, shape (d,), if that is due."""
+        weighting = self._method.feasibility_weighting
+        if weighting is None or weighting.next_feasible != "near":
+            return None
+        X, is_feasible = self.history.feasibility(learn_failed=weighting.learn_failed)
+        k = attempt(is_feasible, len(self.in_flight))
+        return None if k is None else draw_near(self.history.space, X[is_feasible], k, self.taken_keys(), rng)
 
     def _lacks_draws(self, trial: int) -> bool:
         """Tell whether draws all over the space are to make up for those that the design took from a dropped prior.

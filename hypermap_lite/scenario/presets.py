@@ -43,6 +43,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
                 "approximation": "laplace",
                 "learn_failed": False,
                 "first_feasible": "classifier",
+                "next_feasible": "classifier",
             },
             "prior_weighting": {
                 "method": "pibo",
