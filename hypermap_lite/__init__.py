@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from hypermap_lite.evaluation.outcome import Evaluation, State
     from hypermap_lite.history.rows import read_history
     from hypermap_lite.pareto import hypervolume, non_dominated
-    from hypermap_lite.run import Result, optimize
+    from hypermap_lite.result import Result
+    from hypermap_lite.run import optimize
     from hypermap_lite.scenario import load_scenario
 
 __version__ = "0.1.0"
@@ -31,7 +32,7 @@ __all__ = [
 _HOMES = {
     "Evaluation": "hypermap_lite.evaluation.outcome",
     "Optimizer": "hypermap_lite.ask_tell",
-    "Result": "hypermap_lite.run",
+    "Result": "hypermap_lite.result",
     "State": "hypermap_lite.evaluation.outcome",
     "hypervolume": "hypermap_lite.pareto.hypervolume",
     "load_scenario": "hypermap_lite.scenario",

@@ -14,7 +14,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from hypermap_lite.run import Result, run_scenario
+from hypermap_lite.result import Result
+from hypermap_lite.run import run_scenario
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.starting import is_going_on, set_run_folder_aside
 

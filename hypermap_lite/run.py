@@ -6,7 +6,7 @@ import json
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,66 +26,21 @@ from hypermap_lite.evaluation.runner import Runner, StopReason
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.objectives import Objective, reference_point_of, stated_or, values_of
 from hypermap_lite.pareto import hypervolume, infer_reference_point
-from hypermap_lite.reports import ParameterImportance, PosteriorFront
 from hypermap_lite.reports.at_end import make_reports
+from hypermap_lite.result import Point, Result
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.lint import single_points
 from hypermap_lite.scenario.model import Scenario
 from hypermap_lite.starting import set_run_folder_aside
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from hypermap_lite.evaluation.evaluator import Evaluator
     from hypermap_lite.evaluation.outcome import Evaluation
     from hypermap_lite.optimizers.base import Optimizer
     from hypermap_lite.space.search_space import SearchSpace
-    from hypermap_lite.typing import Configuration, FloatArray
+    from hypermap_lite.typing import FloatArray
 
 logger = logging.getLogger(__name__)
-
-Point = tuple["Configuration", Mapping[str, float]]
-"""A configuration and its objective values, as the user directed them."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Result:
-    """What a run has found."""
-
-    evaluations: tuple[Evaluation, ...]
-    """All configurations, trial 0 first, whatever their state."""
-
-    pareto_front: tuple[Point, ...]
-    """The non-dominated ones, in the order of their trials; for one objective the best, with its ties."""
-
-    best: Point | None
-    """The best one of a single objective, the first of equals; None for several objectives."""
-
-    hypervolume: float | None
-    """Volume between front and reference point; None for a single objective, without a front or beyond all floats."""
-
-    reference_point: Mapping[str, float] | None
-    """Corner the hypervolume is measured from: the scenario's, or inferred where an objective has none."""
-
-    run_folder: Path
-    stop_reason: StopReason
-    parameter_importance: ParameterImportance | None = None
-    """How much each parameter matters, if the scenario asks for it and there are enough evaluations."""
-
-    posterior_best: PosteriorFront | None = None
-    """What is best by the surrogate, likewise: the `posterior_front`."""
-
-    posterior_front: PosteriorFront | None = None
-    """The evaluated configurations that are best by the surrogate's means, as ``posterior_front.csv`` has them.
-
-    None if there are too few evaluations for a model, or too many for one that no other part of the run needs.
-    """
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return ``history.csv`` as a data frame: a row per configuration, every number as it was written."""
-        import pandas as pd  # slow to import, used here only
-
-        return pd.read_csv(self.run_folder / "history.csv")  # exact to the last digit since pandas 3.1
 
 
 def optimize(

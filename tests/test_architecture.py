@@ -26,6 +26,7 @@ LAYERS = (
     ("assembly",),
     ("starting",),
     ("reports",),
+    ("result",),
     ("run", "ask_tell"),
     ("optimizer",),
     ("plotting",),

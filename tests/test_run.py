@@ -43,6 +43,21 @@ def test_result_holds_evaluations_front_and_hypervolume(tmp_path):
     assert (result.run_folder, result.stop_reason) == (tmp_path, StopReason.BUDGET)
 
 
+def test_a_printed_result_says_in_a_few_lines_what_was_found(tmp_path):
+    lines = str(optimize(SCENARIO | {"budget": {"evaluations": 40}}, two, output_directory=tmp_path)).splitlines()
+    assert lines[0] == "40 evaluations: 40 completed; the run ended because the budget of evaluations is used up"
+    front = int(lines[1].removeprefix("front of ").split(",")[0])
+    assert front > 5
+    assert len(lines) == 9
+    assert lines[-2:] == [f"  and {front - 5} more", f"files in {tmp_path}"]
+
+
+def test_a_printed_result_of_one_objective_names_the_best(tmp_path):
+    result = optimize(ONE, lambda c: {"f": c["x"]}, output_directory=tmp_path)
+    x = max(e.configuration["x"] for e in result.evaluations)
+    assert f"\nbest: f={x:.6g} at x={x:.6g}" in str(result)
+
+
 def test_the_history_as_a_data_frame_has_every_number_as_written(tmp_path):
     result = optimize(SCENARIO, two, output_directory=tmp_path)
     frame = result.to_frame()

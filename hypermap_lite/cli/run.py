@@ -6,7 +6,6 @@ import json
 import shlex
 import sys
 from argparse import SUPPRESS, Namespace, RawDescriptionHelpFormatter
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, _SubParsersAction
 
     from hypermap_lite.evaluation.channel import Channel
-    from hypermap_lite.run import Result
+    from hypermap_lite.result import Result
     from hypermap_lite.scenario.model import Scenario
 
 EPILOG: Final = """\
@@ -107,6 +106,8 @@ def _run(scenario: Scenario, args: Namespace, channel: Channel | None = None) ->
 
 def _show(result: Result, scenario: Scenario, args: Namespace) -> None:
     """Print what a run has found and where it is, and draw its picture."""
+    from hypermap_lite.result import count_states
+
     print(f"{scenario.application_name}: {count_states(result)}; the run ended because {result.stop_reason.value}\n")
     with _only_a_note("summary"):
         _print_front(result)
@@ -189,13 +190,6 @@ def _print_front(result: Result) -> None:
     (run,) = load_settled([result.run_folder])
     print(front_as_table(run))
     print(f"\n{describe_front(run)}")
-
-
-def count_states(result: Result) -> str:
-    """Return how many evaluations ended how: ``60 evaluations: 58 completed, 2 failed``."""
-    counts = Counter(evaluation.state.value for evaluation in result.evaluations)
-    parts = ", ".join(f"{n} {state}" for state, n in counts.most_common())
-    return f"{len(result.evaluations)} evaluation{'s' * (len(result.evaluations) != 1)}: {parts}"
 
 
 def _draw(result: Result) -> None:
