@@ -21,6 +21,9 @@ MODEL: Final = "model"
 RANDOM: Final = "random"
 """Phase of a draw that no search step stands behind."""
 
+NEAR: Final = "near"
+"""Phase of a draw next to one of the first feasible points."""
+
 CONFIRM: Final = "confirm"
 """Phase of an evaluation that repeats a configuration to know its objectives better."""
 
@@ -87,8 +90,8 @@ class Suggestion:
 
     configuration: Configuration
     phase: str
-    """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``prior``, ``confirm``, or a
-    search."""
+    """Which rule chose it: ``earlier``, ``default``, ``design``, ``model``, ``random``, ``near``, ``prior``,
+    ``confirm``, or a search."""
 
     prior_weight: float | None = None
     """Exponent the user prior had in the choice, 0 in a prior-free step; None where there is nothing to weigh."""

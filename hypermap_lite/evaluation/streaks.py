@@ -61,8 +61,8 @@ def chance_by_parameters(
 ) -> float:
     """Return the probability that the last n rows all fail, each foretold by where those before it failed.
 
-    Failures in the same row of them that were too many already do not count among those: what broke an evaluator says
-    nothing of the parameters, and is no excuse when the run is called again without a mend.
+    But not by those failures in a row just before them that were too many already: what broke an evaluator says nothing
+    of the parameters, and is no excuse when the run is called again without a mend.
     """
     known = {} if known is None else known
     X = space.encode([row.configuration for row in rows])

@@ -13,7 +13,7 @@ from hypermap_lite.acquisition.boundary_weighted import BoundaryWeighted
 from hypermap_lite.acquisition.feasibility_weighted import FeasibilitySearch, Improving, optimistic_ideal
 from hypermap_lite.design.base import InitialDesign
 from hypermap_lite.design.random_sampling import RandomSampling
-from hypermap_lite.evaluation.outcome import MODEL, RANDOM, Suggestion
+from hypermap_lite.evaluation.outcome import MODEL, NEAR, RANDOM, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.maximizers.base import MaximizationProblem, are_apart
 from hypermap_lite.objectives import MAX_CLOSED_FORM, reference_point_of
@@ -140,7 +140,7 @@ class BayesianOptimizer(Optimizer):
             if drawn is not None:
                 return drawn
         if not guidance.weight and (x := self._near_feasible(rng)) is not None:
-            return self._told_of(guidance, trial, x, RANDOM, None)
+            return self._told_of(guidance, trial, x, NEAR, None)
         if has_objectives:
             return self._with_model(trial, rng, feasibility, guidance)
         if feasibility is not None:
@@ -165,7 +165,7 @@ class BayesianOptimizer(Optimizer):
         weighting = self._method.feasibility_weighting
         if weighting is None or weighting.next_feasible != "near":
             return None
-        X, is_feasible = self.history.feasibility(learn_failed=weighting.learn_failed)
+        X, is_feasible = self.history.feasibility(learn_failed=True)
         k = attempt(is_feasible, len(self.in_flight))
         return None if k is None else draw_near(self.history.space, X[is_feasible], k, self.taken_keys(), rng)
 

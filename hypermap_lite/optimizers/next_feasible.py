@@ -11,7 +11,7 @@ from hypermap_lite.surrogates.feasibility import FEWEST_OF_FIT
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 
 PATIENCE: Final = 8
-"""Infeasible evaluations in a row after which those near a feasible point begin.
+"""Evaluations since the last feasible one after which those near a feasible point begin.
 
 Where the classifier leads to feasible points it finds other regions, too, which a search near the first point misses:
 C2-DTLZ2 ended at 0.939 of the hypervolume without patience, at 0.955 with that of 4, and at 0.970 with this one.
@@ -25,33 +25,33 @@ CANDIDATES: Final = 32
 
 
 def attempt(is_feasible: BoolArray, n_pending: int = 0) -> int | None:
-    """Return the number of the next draw near a feasible point since one was found, from 0 on; None if none is due.
+    """Return the number of the draw near a feasible point that is due, from 0 on; None if the search goes on without.
 
-    Once `PATIENCE` suggestions in a row were infeasible, every one is such a draw until another feasible point is found
-    or each of `WIDTHS` had its turn; from then on every second one. What was feasible only by chance, or is a region of
-    its own, so small that nothing else of it is found, takes half of a run at most.
+    While there are one or two, the 9th to 13th evaluation since the last of them are such draws, one for each of
+    `WIDTHS`, then every second one. What was feasible only by chance, or is a region of its own, so small that nothing
+    else of it is found, takes half of a run at most.
 
     Parameters
     ----------
     is_feasible
-        Of the evaluations so far, shape (n,).
+        Of the evaluations so far, those of the design included, shape (n,).
     n_pending
         Evaluations under way, which may all be infeasible.
     """
     if is_feasible.all() or not 0 < is_feasible.sum() < FEWEST_OF_FIT:
         return None
-    since = len(is_feasible) - 1 - int(np.flatnonzero(is_feasible)[-1]) + n_pending - PATIENCE
-    if since < len(WIDTHS):
-        return since if since >= 0 else None
-    beyond = since - len(WIDTHS)
+    late = len(is_feasible) - 1 - int(np.flatnonzero(is_feasible)[-1]) + n_pending - PATIENCE
+    if late < len(WIDTHS):
+        return late if late >= 0 else None
+    beyond = late - len(WIDTHS)
     return len(WIDTHS) + beyond // 2 if beyond % 2 else None
 
 
-def draw_near(space: SearchSpace, feasible: FloatArray, k: int, taken: list[bytes], rng: Rng) -> FloatArray | None:
-    """Return a new point for attempt k near one of the feasible ones, shape (k, d), by turns; or None if none is found.
+def draw_near(space: SearchSpace, feasible: FloatArray, number: int, taken: list[bytes], rng: Rng) -> FloatArray | None:
+    """Return a new point near one of k feasible ones, shape (k, d) to (d,), by turns; or None if none is found.
 
-    It is uniform in a box, smaller from one attempt to the next, and then large again. Axes without an order keep their
-    values.
+    It is uniform in the part of a box that is within the space; the box is smaller from one number to the next, and
+    then large again. Axes without an order keep their values.
 
     The region that the first feasible point belongs to may be a sliver, of which a classifier knows no more than that
     point: it takes the point for a matter of chance, and the search leaves it. Final hypervolume of 60 evaluations, or
@@ -64,9 +64,9 @@ def draw_near(space: SearchSpace, feasible: FloatArray, k: int, taken: list[byte
         Osyczka and Kundu, six axes               6110   6650
         tension spring, 1.6 %                    -1.39  -1.61
     """
-    centre = feasible[::-1][k % len(feasible)]
-    width = np.where(space.is_ordered, WIDTHS[k % len(WIDTHS)], 0.0)
-    X = np.clip(centre + width * rng.uniform(-1.0, 1.0, (CANDIDATES, len(centre))), 0.0, 1.0)
-    X = space.keep_allowed(space.snap(X))
+    centre = feasible[::-1][number % len(feasible)]
+    width = np.where(space.is_ordered, WIDTHS[number % len(WIDTHS)], 0.0)
+    low, high = np.maximum(centre - width, 0.0), np.minimum(centre + width, 1.0)
+    X = space.keep_allowed(space.snap(low + (high - low) * rng.random((CANDIDATES, len(centre)))))
     X = X[space.unseen(X, taken)]
     return X[0] if len(X) else None

@@ -281,6 +281,8 @@ def _failures(scenario: Scenario) -> list[str]:
     if scenario.evaluator.component is None:
         return []
     late = f" ({MOST_FAILURES} where their parameters explain them)" if n is None else ""
+    if n == 1:
+        return ["the run ends after the first failure"]
     return [f"the run ends after {USUAL_FAILURES if n is None else n} failures in a row{late}"]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hypermap_lite.assembly import build_optimizer
-from hypermap_lite.evaluation.outcome import Evaluation, State, Suggestion
+from hypermap_lite.evaluation.outcome import NEAR, Evaluation, State, Suggestion
 from hypermap_lite.optimizers import Optimizer
 from hypermap_lite.optimizers.next_feasible import PATIENCE, WIDTHS, attempt, draw_near
 from hypermap_lite.scenario.loader import load_scenario
@@ -21,7 +21,6 @@ from hypermap_lite.space.search_space import SearchSpace
 from tests.optimizers.runs import resumed, scenario_of
 
 SQUARE = SearchSpace(tuple(RealParameter(name=name, low=0.0, high=1.0) for name in "ab"))
-CLASSIFIER = {"feasibility_weighting": {"next_feasible": "classifier"}}
 
 
 def judged(suggestion: Suggestion, is_feasible: Callable[[Mapping[str, Any]], bool]) -> Evaluation:
@@ -31,45 +30,55 @@ def judged(suggestion: Suggestion, is_feasible: Callable[[Mapping[str, Any]], bo
     return Evaluation(suggestion=suggestion, state=state, values=values)
 
 
-def run(scenario, is_feasible, n: int, batch: int = 1) -> Optimizer:
-    optimizer = build_optimizer(load_scenario(scenario))
-    while len(optimizer.history) < n:
-        optimizer.tell([judged(s, is_feasible) for s in optimizer.ask(min(batch, n - len(optimizer.history)))])
-    return optimizer
-
-
-def is_in_sliver(c: Mapping[str, Any]) -> bool:
-    """Tell whether a point is in a twentieth of the space."""
-    return abs(float(c["a"]) - 0.05) < 0.025
-
-
 def scenario(**changes: Any) -> dict[str, Any]:
     parameters = {name: {"parameter_type": "real", "values": [0, 1]} for name in "abc"}
     return scenario_of(input_parameters=parameters, budget={"evaluations": 50}, **changes)
 
 
-def n_feasible(optimizer: Optimizer) -> int:
-    return len(optimizer.history.completed)
+def once(scenario, n: int, batch: int = 1) -> Optimizer:
+    """Run a scenario in which trial 3 alone is feasible."""
+    optimizer = build_optimizer(load_scenario(scenario))
+    while len(optimizer.history) < n:
+        optimizer.tell([judged(s, lambda _, t=s.trial: t == 3) for s in optimizer.ask(batch)])
+    return optimizer
 
 
-def test_more_of_a_sliver_is_found_next_to_its_first_point_than_by_the_classifier() -> None:
-    near, without = (
-        [n_feasible(run(scenario(seed=seed, acquisition=a), is_in_sliver, 40)) for seed in range(3)]
-        for a in ({}, CLASSIFIER)
-    )
-    assert np.mean(near) > 1.5 * np.mean(without)
+def test_of_a_sliver_that_one_point_is_known_of_five_draws_find_another() -> None:
+    rng, found = np.random.default_rng(0), []
+    cube = scenario_of(input_parameters={name: {"parameter_type": "real", "values": [0, 1]} for name in "abc"})
+    space = build_optimizer(load_scenario(cube)).history.space
+    for _ in range(200):
+        centre = np.array([[rng.uniform(0.025, 0.075), rng.random(), rng.random()]])
+        draws = [draw_near(space, centre, number, [], rng) for number in range(len(WIDTHS))]
+        found.append(sum(abs(x[0] - 0.05) < 0.025 for x in draws))
+    assert np.mean(np.array(found) > 0) > 0.9
+    assert np.mean(found) > 2
 
 
 @pytest.mark.parametrize("batch", [1, 3])
 def test_the_same_points_come_after_a_resume(batch: int) -> None:
-    whole = list(run(scenario(seed=1), is_in_sliver, 30, batch).history)
-    first = next(i for i, row in enumerate(whole) if row.is_completed)
-    for n in (first + 1, first + 4, 27):
-        n -= n % batch
-        again = resumed(scenario(seed=1), whole[:n]).ask(batch)
-        assert [replace(s, seconds=0.0) for s in again] == [
-            replace(row.suggestion, seconds=0.0) for row in whole[n : n + batch]
-        ]
+    asked = scenario(seed=1)
+    whole = list(once(asked, 36, batch).history)
+    near = [row.trial for row in whole if row.suggestion.phase == NEAR]
+    assert len(near) >= 8
+    for trial in near:
+        n = trial - trial % batch
+        again = resumed(asked, whole[:n]).ask(batch)
+        expected = [replace(row.suggestion, seconds=0.0) for row in whole[n : n + batch]]
+        assert [replace(s, seconds=0.0) for s in again] == expected
+
+
+def test_after_patience_they_are_draws_near_the_feasible_point_that_the_history_names_so() -> None:
+    rows = list(once(scenario(seed=1), 24).history)
+    first = 4 + PATIENCE
+    phases = [row.suggestion.phase for row in rows[first:]]
+    assert phases[:5] == [NEAR] * 5
+    assert [phase == NEAR for phase in phases[5:12]] == [False, True] * 3 + [False]
+    assert NEAR not in [row.suggestion.phase for row in rows[:first]]
+    X = once(scenario(seed=1), 24).history.X_all()
+    distances = np.abs(X - X[3]).max(axis=1)
+    assert (distances[first:][:5] <= WIDTHS).all()
+    assert all(row.suggestion.acquisition_value is None for row in rows if row.suggestion.phase == NEAR)
 
 
 def test_eight_others_in_a_row_call_for_five_draws_and_from_then_on_every_second_suggestion_is_one() -> None:
@@ -114,27 +123,30 @@ def test_categories_stay_and_what_is_known_is_not_drawn_again() -> None:
 
 
 def test_known_constraints_hold() -> None:
-    history = run(scenario(seed=1, constraints=["a + b + c <= 1.5"]), is_in_sliver, 40).history
-    assert all(sum(float(v) for v in row.configuration.values()) <= 1.5 + 1e-9 for row in history)
-    assert 0 < len(history.completed) < 40
+    asked = scenario(seed=1, constraints=["a + b + c <= 1.5"])
+    optimizer = once(asked, 30)
+    near = [row.configuration for row in optimizer.history if row.suggestion.phase == NEAR]
+    assert len(near) > 5
+    assert all(sum(float(v) for v in c.values()) <= 1.5 + 1e-9 for c in near)
+    space, rng = optimizer.history.space, np.random.default_rng(0)
+    on_edge = np.full((1, 3), 0.5)
+    assert all(draw_near(space, on_edge, k, [], rng).sum() <= 1.5 + 1e-9 for k in range(50))
 
 
 def test_steps_that_a_prior_guides_are_not_replaced() -> None:
     asked = scenario(seed=1)
     asked["input_parameters"]["c"] |= {"prior": {"type": "gaussian", "mean": 0.5, "std": 0.2}}
+    later = [row.suggestion for row in once(asked, 40).history]
+    assert NEAR not in {s.phase for s in later if s.prior_weight}
+    assert NEAR in {s.phase for s in later if s.prior_weight == 0}
+
+
+@pytest.mark.parametrize("learn_failed", [True, False])
+def test_evaluations_that_fail_are_counted_and_do_not_call_for_draws_for_ever(learn_failed: bool) -> None:
+    asked = scenario(seed=1, acquisition={"feasibility_weighting": {"learn_failed": learn_failed}})
     optimizer = build_optimizer(load_scenario(asked))
-    while len(optimizer.history) < 40:
-        optimizer.tell([judged(s, lambda _: len(optimizer.history) == 3) for s in optimizer.ask()])
-    later = [row.suggestion for row in optimizer.history if row.suggestion.phase in {"model", "random"}]
-    assert {s.phase for s in later if s.prior_weight} == {"model"}
-    assert "random" in {s.phase for s in later if s.prior_weight == 0}
-
-
-def test_evaluations_that_fail_count_as_infeasible() -> None:
-    optimizer = build_optimizer(load_scenario(scenario(seed=1)))
-    while len(optimizer.history) < 30:
-        rows = [judged(s, lambda _: len(optimizer.history) == 3) for s in optimizer.ask()]
+    while len(optimizer.history) < 36:
+        rows = [judged(s, lambda _, t=s.trial: t == 3) for s in optimizer.ask()]
         optimizer.tell([row if row.is_completed else replace(row, state=State.FAILED, values={}) for row in rows])
-    distances = np.abs(optimizer.history.X_all() - optimizer.history.X_all()[3]).max(axis=1)
-    assert distances[4 : 4 + PATIENCE].max() > WIDTHS[0]
-    assert (distances[4 + PATIENCE :][: len(WIDTHS)] <= WIDTHS).all()
+    near = [row.trial for row in optimizer.history if row.suggestion.phase == NEAR]
+    assert near == [12, 13, 14, 15, 16, 18, 20, 22, 24, 26, 28, 30, 32, 34]

@@ -95,6 +95,7 @@ def test_the_feasibility_has_a_line_and_a_part_in_the_method() -> None:
     [
         ({}, "5 failures in a row (20 where their parameters explain them)"),
         ({"max_consecutive_failures": 2}, "2 failures in a row\n"),
+        ({"max_consecutive_failures": 1}, "the first failure\n"),
     ],
 )
 def test_failures_in_a_row_have_a_line(given, line) -> None:
