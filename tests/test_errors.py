@@ -46,3 +46,11 @@ def test_an_error_survives_pickling() -> None:
 )
 def test_nearest_understands_slips_beginnings_and_initials(given: str, expected: str) -> None:
     assert nearest(given, ["design", "maximize", "expected_improvement"]) == expected
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [("type", "Did you mean 'parameter_type'?"), ("file", ""), ("ype", ""), ("_type", "")],
+)
+def test_nearest_understands_last_words_that_no_other_name_has(given: str, expected: str) -> None:
+    assert nearest(given, ["parameter_type", "all_samples_file", "pareto_file", "values"]) == expected
