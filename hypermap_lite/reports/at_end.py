@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from hypermap_lite.assembly import build_history
 from hypermap_lite.errors import HypermapLiteError
+from hypermap_lite.evaluation.observer import SAID_BY_COMMAND
 from hypermap_lite.history.finishing_order import as_learnt
 from hypermap_lite.history.run_folder import RunFolder
 from hypermap_lite.optimizers.base import Optimizer
@@ -43,14 +44,14 @@ def make_reports(scenario: Scenario, folder: RunFolder, optimizer: Optimizer | N
             "parameter_importance", lambda: parameter_importance(scenario, history, optimizer), is_asked_for=True
         )
         if importance is not None:
-            logger.info("%s", importance)
+            logger.info("%s", importance, extra=SAID_BY_COMMAND)
     if output.posterior_best or is_worth_a_model(scenario, history):
         what = "posterior_best" if output.posterior_best else "posterior front"
         front = _made(what, lambda: posterior_front(scenario, history, optimizer), is_asked_for=output.posterior_best)
     if front is not None:
         folder.write_posterior_front(front.as_csv(folder.space))
         if output.posterior_best:
-            logger.info("%s", front)
+            logger.info("%s", front, extra=SAID_BY_COMMAND)
     return Reports(parameter_importance=importance, posterior_front=front)
 
 
