@@ -3,7 +3,7 @@
 A variant is a list of changes to the scenario, as `--set` takes them; each changes one default and leaves the rest.
 `OF_FEASIBILITY` holds those that change nothing without an unknown constraint, `OF_TAILS` those that change next to
 nothing without values far beyond the rest, `OF_OUTLIERS` those that matter where evaluations fail without a reason,
-`OF_FAILURES` where they fail with one.
+`OF_FAILURES` where they fail with one, `OF_NOISE` those that change nothing with several objectives.
 """
 
 from __future__ import annotations
@@ -36,4 +36,5 @@ OF_FEASIBILITY: Mapping[str, Sequence[str]] = {
 }
 OF_TAILS: Mapping[str, Sequence[str]] = {"tails as they are": ("surrogate.compress_tails=false",)}
 OF_OUTLIERS: Mapping[str, Sequence[str]] = {"outliers believed": ("surrogate.ignore_outliers=false",)}
+OF_NOISE: Mapping[str, Sequence[str]] = {"noise believed": ("surrogate.doubt_noise=false",)}
 OF_FAILURES: Mapping[str, Sequence[str]] = {"failures among the rest": ("surrogate.separate_failures=false",)}

@@ -25,7 +25,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_OUTLIERS, OF_TAILS
+from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_NOISE, OF_OUTLIERS, OF_TAILS
 from contenders import Contender, Task
 from efficiency_page import write_page
 from methods import DEFAULT, METHODS, PEERS, Method, ours, starter
@@ -47,7 +47,7 @@ class Table:
 
 
 TABLES: Mapping[str, Table] = {
-    "single": Table(title="One objective", problems=tuple(SINGLE)),
+    "single": Table(title="One objective", problems=tuple(SINGLE), methods=(*COMPARED, *OF_NOISE)),
     "several": Table(title="Two and three objectives", problems=tuple(SEVERAL)),
     "constrained": Table(
         title="Two objectives with an unknown constraint",

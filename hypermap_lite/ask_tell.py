@@ -95,8 +95,9 @@ class Optimizer:
         suggestion
             What `ask` returned, or its trial number.
         result
-            Objective values by name, or a bare number if there is one objective; ``{"feasible": False}``, or what
-            ``feasible_output`` says, if the configuration is not allowed; None if the evaluation failed.
+            Objective values by name or in the order of the objectives, or a bare number if there is one objective;
+            ``{"feasible": False}``, or what ``feasible_output`` says, if the configuration is not allowed; None if the
+            evaluation failed.
         error
             Why it failed.
 

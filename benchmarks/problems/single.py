@@ -32,6 +32,17 @@ def func2c(X: FloatArray) -> FloatArray:
     return values[rows, chosen[:, 0]] + values[rows, chosen[:, 1]]
 
 
+def gramacy_lee(X: FloatArray) -> FloatArray:
+    """Return a function of one parameter with ten waves on a slope [1]_.
+
+    References
+    ----------
+    .. [1] Gramacy, Lee. Cases for the Nugget in Modeling Computer Experiments. Statistics and Computing, 2012.
+    """
+    x = X[:, 0]
+    return np.sin(10 * np.pi * x) / (2 * x) + (x - 1) ** 4
+
+
 HARTMANN6 = Problem(
     function=one_objective(hartmann6), parameters=real_parameters([(0, 1)] * 6), best=-3.3223680114155147
 )
@@ -54,5 +65,11 @@ SINGLE: Mapping[str, Problem] = {
             **real_parameters([(-1, 1)] * 2),
         },
         best=-0.20632569069807788,
+    ),
+    "gramacy_lee": Problem(
+        function=one_objective(gramacy_lee),
+        parameters=real_parameters([(0.5, 2.5)]),
+        best=-0.8690111349895,
+        evaluations=30,
     ),
 }

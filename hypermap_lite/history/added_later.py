@@ -27,6 +27,7 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.optimizer.escapes": "0",
     "$.surrogate.categorical_prior": "false",
     "$.surrogate.compress_tails": "false",
+    "$.surrogate.doubt_noise": "false",
     "$.surrogate.ignore_outliers": "false",
     "$.surrogate.learn_infeasible": "false",
     "$.surrogate.lengthscale_location": json.dumps(math.sqrt(2.0)),

@@ -75,6 +75,9 @@ def fill_derived(document: Mapping[str, Any]) -> dict[str, Any]:
     if "exponent" in weighting and weighting["exponent"] is None:
         exponent = EXPONENT_OF_ONE if len(document["objectives"]) == 1 else EXPONENT_OF_SEVERAL
         derived["acquisition"] = {**acquisition, "feasibility_weighting": {**weighting, "exponent": exponent}}
+    surrogate = derived["surrogate"]
+    if "doubt_noise" in surrogate and surrogate["doubt_noise"] is None:
+        derived["surrogate"] = {**surrogate, "doubt_noise": len(document["objectives"]) == 1}
     directory = document["output"]["directory"] or f"outputs/{document['application_name']}"
     derived["output"] = {**document["output"], "directory": directory}
     return derived

@@ -23,6 +23,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "categorical_prior": False,
             "noise_floor": 1e-6,
             "noise_tail": 2.0,
+            "doubt_noise": False,
             "lengthscale_location": math.sqrt(2.0),
             "lengthscale_width": math.sqrt(3.0),
             "restart": True,

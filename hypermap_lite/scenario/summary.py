@@ -34,7 +34,7 @@ CARE = ("prior_free", "safeguard", "make_up")
 UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
-SAID_IN_WORDS = ("compress_tails", "ignore_outliers", "learn_infeasible", "separate_failures")
+SAID_IN_WORDS = ("compress_tails", "doubt_noise", "ignore_outliers", "learn_infeasible", "separate_failures")
 """Options that have a sentence of their own."""
 
 
@@ -186,18 +186,18 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append("objective values of infeasible evaluations inform the model, unless they look like placeholders")
     if scenario.surrogate.options.get("compress_tails"):
         lines.append("values far beyond those that count, such as penalties, are compressed for the model")
-    if _ignores_outliers(scenario.surrogate.options):
+    if _learns_noise_and(scenario.surrogate.options, "doubt_noise"):
+        lines.append("what looks like noise is taken for roughness where a model without noise is likelier")
+    if _learns_noise_and(scenario.surrogate.options, "ignore_outliers"):
         lines.append("an evaluation far worse than the others foretell is set aside until one near it is as bad")
     if _separates_failures(scenario):
         lines.append("evaluations in a bad mode of their own, such as failures, are told apart from the others")
     return [*lines, _prior_use(scenario)]
 
 
-def _ignores_outliers(surrogate: Mapping[str, Any]) -> bool:
-    """Tell whether a surrogate with these options has outliers: not one that knows its noise."""
-    return bool(
-        surrogate.get("ignore_outliers") and surrogate.get("noise") and not surrogate.get("noise_from_replicates")
-    )
+def _learns_noise_and(surrogate: Mapping[str, Any], option: str) -> bool:
+    """Tell whether a surrogate with these options has one that is of no use to a model that knows its noise."""
+    return bool(surrogate.get(option) and surrogate.get("noise") and not surrogate.get("noise_from_replicates"))
 
 
 def _separates_failures(scenario: Scenario) -> bool:

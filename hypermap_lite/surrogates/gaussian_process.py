@@ -32,6 +32,7 @@ from hypermap_lite.surrogates.marginal_likelihood import (
     MarginalLikelihood,
     fit_hyperparameters,
 )
+from hypermap_lite.surrogates.noise_free import likelier_without_noise
 from hypermap_lite.surrogates.outliers import Start, without_outliers
 from hypermap_lite.surrogates.paths import Path
 from hypermap_lite.surrogates.process import Process, ProcessField, Standardized
@@ -91,6 +92,9 @@ class GaussianProcess:
 
     separate_failures: bool = True
     """Whether evaluations in a bad mode of their own are told apart where that makes all of them much likelier."""
+
+    doubt_noise: bool = False
+    """Whether a model without noise takes the place of one with noise where it is likelier."""
 
     def __post_init__(self) -> None:
         if not 0 < self.noise_floor <= 1:
@@ -161,6 +165,11 @@ class GaussianProcess:
         """Whether there may be any: where the noise is known, each says what it says."""
         return self.ignore_outliers and self.noise and not self.noise_from_replicates
 
+    @property
+    def _may_lack_noise(self) -> bool:
+        """Whether a model without noise is to be compared: where the noise is known, there is nothing to ask."""
+        return bool(self.doubt_noise) and self.noise and not self.noise_from_replicates
+
     def _prior(self, is_ordered: BoolArray, permutations: Permutations) -> HyperPrior:
         return HyperPrior.over(
             is_ordered if self.categorical_prior else np.ones_like(is_ordered),
@@ -195,21 +204,28 @@ class GaussianProcess:
             output = Standardized.of(y)
             known = None if noise_variance is None or not self.noise else output.noise(noise_variance[:n, k])
             likelihood = MarginalLikelihood(X[:n], output.values, is_ordered, prior, permutations, known)
-            starts = [] if start is None else [start[k].hyperparameters]
-            if start is None or anew or self.restart:
-                starts.append(prior.mode())
-            if self._has_outliers:
-                before = None if start is None else start[k]
-                fit = without_outliers(likelihood, y, starts, before, is_exact=self.restart).fit
-            else:
-                best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
-                fit = Fitted(output=output, likelihood=likelihood, hyperparameters=best)
-            fits = [*fits, fit]
+            fits = [*fits, self._fitted(likelihood, output, y, None if start is None else start[k], anew=anew)]
         if n_beside:
             noise_beside = None if noise_variance is None else noise_variance[n:]
             fits = with_beside(fits, X[n:], Y[n:], noise_beside, is_exact=self.restart)
         processes = tuple(fit.process for fit in fits)
         return GaussianProcessPosterior(processes=processes, may_be_best=np.arange(len(processes[0].X)) < n)
+
+    def _fitted(
+        self, likelihood: MarginalLikelihood, output: Standardized, y: FloatArray, before: Start | None, *, anew: bool
+    ) -> Fitted:
+        """Fit one objective, from what a fit to fewer evaluations has found."""
+        starts = [] if before is None else [before.hyperparameters]
+        if before is None or anew or self.restart:
+            starts.append(likelihood.prior.mode())
+        if self._has_outliers:
+            fit = without_outliers(likelihood, y, starts, before, is_exact=self.restart).fit
+        else:
+            best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
+            fit = Fitted(output=output, likelihood=likelihood, hyperparameters=best)
+        if not self._may_lack_noise:
+            return fit
+        return likelier_without_noise(fit, is_exact=self.restart) or fit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -285,7 +301,7 @@ class GaussianProcessPosterior:
                 Process.condition(X, output, p.hyperparameters, kernel.is_ordered, kernel.permutations, known, offsets)
             )
         may_be_best = np.append(self.may_be_best, np.ones(len(X_pending), dtype=bool))
-        return GaussianProcessPosterior(processes=tuple(believed), may_be_best=may_be_best)
+        return replace(self, processes=tuple(believed), may_be_best=may_be_best)
 
     def fantasies(self, X_pending: FloatArray, n: int, rng: Rng) -> Fantasies:
         """Draw the noise-free objectives at all observed and pending points by quasi-Monte Carlo, jointly [1]_.

@@ -159,6 +159,11 @@ class HyperPrior:
         return float(value.sum()), gradient
 
     @property
+    def penalty_of_usual_noise(self) -> float:
+        """The part in `penalty` of the noise that is most likely before any data, which is the smallest it can be."""
+        return self.noise_mu - 0.5 * self.noise_sigma**2
+
+    @property
     def _log_noise_mode(self) -> float:
         return self.noise_mu - self.noise_sigma**2
 

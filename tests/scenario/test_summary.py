@@ -116,6 +116,15 @@ def test_outliers_have_a_line() -> None:
         assert "set aside" not in page(surrogate=surrogate)
 
 
+def test_doubted_noise_has_a_line() -> None:
+    line = "what looks like noise is taken for roughness where a model without noise is likelier"
+    one = [{"name": "f1"}]
+    assert line in page(objectives=one)
+    assert line not in page()
+    for surrogate in ({"doubt_noise": False}, {"noise": False}, {"noise_from_replicates": True}, "random_forest"):
+        assert line not in page(objectives=one, surrogate=surrogate)
+
+
 def test_separate_failures_have_a_line() -> None:
     line = "evaluations in a bad mode of their own, such as failures, are told apart from the others"
     assert line in page()
