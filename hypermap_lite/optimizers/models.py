@@ -186,7 +186,20 @@ class Models:
         if self._posterior_of is None or self._posterior_of[0] != key:
             self._posterior_of = (key, self._posterior_after(n, beside))
             self._announce_outliers(self._posterior_of[1])
+            self._announce_doubts(self._posterior_of[1])
         return self._posterior_of[1]
+
+    def _announce_doubts(self, posterior: Posterior) -> None:
+        """Log, once per objective, that a model without noise takes the place of one with noise."""
+        for objective, is_doubted in zip(self._history.objectives, posterior.lacks_noise(), strict=True):
+            if is_doubted and ("noise", objective.name) not in self._announced:
+                self._announced.add(("noise", objective.name))
+                logger.info(
+                    "after %d completed evaluations: %s is more likely rough than noisy; the model goes without noise"
+                    " as long as that is so",
+                    len(self._history.completed),
+                    objective.name,
+                )
 
     def _announce_outliers(self, posterior: Posterior) -> None:
         """Log, once per evaluation and objective, that it is set aside."""

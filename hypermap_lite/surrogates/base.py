@@ -118,6 +118,13 @@ class Posterior(Predictor, Protocol):
         """
         ...
 
+    def lacks_noise(self) -> tuple[bool, ...]:
+        """Return for which of the m objectives this fit took a model without noise in place of one with noise.
+
+        A later fit that starts from it has nothing left to doubt.
+        """
+        ...
+
     def field(self, X: FloatArray) -> Conditional:
         """Predict as `predict` does, as a field with a single scenario."""
         ...

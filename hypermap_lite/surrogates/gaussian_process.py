@@ -209,7 +209,11 @@ class GaussianProcess:
             noise_beside = None if noise_variance is None else noise_variance[n:]
             fits = with_beside(fits, X[n:], Y[n:], noise_beside, is_exact=self.restart)
         processes = tuple(fit.process for fit in fits)
-        return GaussianProcessPosterior(processes=processes, may_be_best=np.arange(len(processes[0].X)) < n)
+        return GaussianProcessPosterior(
+            processes=processes,
+            may_be_best=np.arange(len(processes[0].X)) < n,
+            is_free_of_noise=tuple(self.noise and not fit.likelihood.prior.has_noise for fit in fits),
+        )
 
     def _fitted(
         self, likelihood: MarginalLikelihood, output: Standardized, y: FloatArray, before: Start | None, *, anew: bool
@@ -236,6 +240,9 @@ class GaussianProcessPosterior:
 
     may_be_best: BoolArray
     """Which of the evaluations may be on the front, shape (n,); the others only inform."""
+
+    is_free_of_noise: tuple[bool, ...]
+    """For which of the m objectives a model without noise was taken in place of one with noise."""
 
     @property
     def hyperparameters(self) -> tuple[Hyperparameters, ...]:
@@ -269,6 +276,10 @@ class GaussianProcessPosterior:
         nothing = np.zeros(len(self.may_be_best), dtype=bool)
         set_aside = [nothing if p.offsets is None else ~p.offsets.says_something for p in self.processes]
         return np.column_stack(set_aside)[self.may_be_best]
+
+    def lacks_noise(self) -> tuple[bool, ...]:
+        """Return for which of the m objectives this fit took a model without noise in place of one with noise."""
+        return self.is_free_of_noise
 
     def predict(self, X: FloatArray) -> Prediction:
         """Predict the noise-free objectives at n points, shape (n, d)."""

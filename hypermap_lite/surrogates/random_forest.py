@@ -242,6 +242,10 @@ class ForestPosterior:
         """None: a forest does not ask whether the others foretell an evaluation."""
         return
 
+    def lacks_noise(self) -> tuple[bool, ...]:
+        """None of the objectives does: a forest has no noise to do without."""
+        return (False,) * len(self.forests)
+
     def explained(self) -> None:
         """None: that would take as many forests as there are evaluations."""
         return

@@ -1,7 +1,7 @@
 """Whether roughness is told from noise: a model without noise beside one with it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -151,30 +151,41 @@ def test_known_noise_is_not_doubted() -> None:
     assert believed.hyperparameters[0].noise_variance == doubted.hyperparameters[0].noise_variance
 
 
+# the noise is doubted from the 20th evaluation on
+WAVES = {
+    "seed": 6,
+    "input_parameters": {"x": {"parameter_type": "real", "values": [0, 1]}},
+    "objectives": [{"name": "loss"}],
+    "budget": {"evaluations": 30},
+}
+BELIEVED = {**WAVES, "surrogate": {"doubt_noise": False}}
+
+
+def completed(scenario: Mapping[str, Any], rows: Sequence[Evaluation] = ()) -> list[Evaluation]:
+    optimizer = Optimizer(dict(scenario), evaluations=rows)
+    for _ in range(30 - len(rows)):
+        (suggestion,) = optimizer.ask()
+        x = float(suggestion.configuration["x"])
+        optimizer.tell(suggestion, {"loss": float(rough(np.array([[x]]))[0])})
+    return list(optimizer.history)
+
+
+def places(rows: Sequence[Evaluation]) -> list[float]:
+    return [float(row.configuration["x"]) for row in rows]
+
+
 def test_a_run_that_goes_on_suggests_what_it_would_have_suggested() -> None:
-    scenario = {
-        "seed": 6,  # the noise is doubted from the 20th evaluation on
-        "input_parameters": {"x": {"parameter_type": "real", "values": [0, 1]}},
-        "objectives": [{"name": "f"}],
-        "budget": {"evaluations": 30},
-    }
-
-    def completed(scenario: dict[str, Any], rows: Sequence[Evaluation]) -> list[Evaluation]:
-        optimizer = Optimizer(scenario, evaluations=rows)
-        for _ in range(30 - len(rows)):
-            (suggestion,) = optimizer.ask()
-            x = float(suggestion.configuration["x"])
-            optimizer.tell(suggestion, {"f": float(rough(np.array([[x]]))[0])})
-        return list(optimizer.history)
-
-    def places(rows: Sequence[Evaluation]) -> list[float]:
-        return [float(row.configuration["x"]) for row in rows]
-
-    believed = completed({**scenario, "surrogate": {"doubt_noise": False}}, ())
-    whole = completed(scenario, ())
-    assert places(whole) != places(believed)
+    whole = completed(WAVES)
+    assert places(whole) != places(completed(BELIEVED))
     for k in (17, 19, 23, 26):
-        assert places(completed(scenario, whole[:k])) == places(whole)
+        assert places(completed(WAVES, whole[:k])) == places(whole)
+
+
+@pytest.mark.parametrize(("scenario", "lines"), [(WAVES, 1), (BELIEVED, 0)])
+def test_the_log_says_once_that_the_noise_is_doubted(scenario, lines, caplog) -> None:
+    caplog.set_level("INFO", logger="hypermap_lite")
+    completed(scenario)
+    assert caplog.text.count("evaluations: loss is more likely rough than noisy; the model goes without noise") == lines
 
 
 @pytest.mark.parametrize(("n_objectives", "preset", "doubts"), [(1, {}, True), (2, {}, False), (1, "paper", False)])
