@@ -191,7 +191,7 @@ class Models:
 
     def _announce_doubts(self, posterior: Posterior) -> None:
         """Log, once per objective, that a model without noise takes the place of one with noise."""
-        for objective, is_doubted in zip(self._history.objectives, posterior.lacks_noise(), strict=True):
+        for objective, is_doubted in zip(self._history.objectives, posterior.lacks_noise, strict=True):
             if is_doubted and ("noise", objective.name) not in self._announced:
                 self._announced.add(("noise", objective.name))
                 logger.info(

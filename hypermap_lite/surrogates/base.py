@@ -118,8 +118,9 @@ class Posterior(Predictor, Protocol):
         """
         ...
 
+    @property
     def lacks_noise(self) -> tuple[bool, ...]:
-        """Return for which of the m objectives this fit took a model without noise in place of one with noise.
+        """For which of the m objectives this fit took a model without noise in place of one with noise.
 
         A later fit that starts from it has nothing left to doubt.
         """

@@ -62,7 +62,7 @@ FEWEST: Final = 10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Densities:
-    """How likely outputs are by the Gaussian process that is to learn from them."""
+    """How likely outputs are by the Gaussian process that is to learn from them, its noise not doubted."""
 
     prior: HyperPrior
     is_ordered: BoolArray

@@ -163,12 +163,12 @@ class GaussianProcess:
     @property
     def _has_outliers(self) -> bool:
         """Whether there may be any: where the noise is known, each says what it says."""
-        return self.ignore_outliers and self.noise and not self.noise_from_replicates
+        return self.ignore_outliers and self._learns_noise
 
     @property
-    def _may_lack_noise(self) -> bool:
-        """Whether a model without noise is to be compared: where the noise is known, there is nothing to ask."""
-        return bool(self.doubt_noise) and self.noise and not self.noise_from_replicates
+    def _learns_noise(self) -> bool:
+        """Whether the noise is neither known nor none."""
+        return self.noise and not self.noise_from_replicates
 
     def _prior(self, is_ordered: BoolArray, permutations: Permutations) -> HyperPrior:
         return HyperPrior.over(
@@ -212,7 +212,7 @@ class GaussianProcess:
         return GaussianProcessPosterior(
             processes=processes,
             may_be_best=np.arange(len(processes[0].X)) < n,
-            is_free_of_noise=tuple(self.noise and not fit.likelihood.prior.has_noise for fit in fits),
+            lacks_noise=tuple(self.noise and not fit.likelihood.prior.has_noise for fit in fits),
         )
 
     def _fitted(
@@ -227,7 +227,7 @@ class GaussianProcess:
         else:
             best = fit_hyperparameters(likelihood, starts, is_exact=self.restart)
             fit = Fitted(output=output, likelihood=likelihood, hyperparameters=best)
-        if not self._may_lack_noise:
+        if not (self.doubt_noise and self._learns_noise):
             return fit
         return likelier_without_noise(fit, is_exact=self.restart) or fit
 
@@ -241,7 +241,7 @@ class GaussianProcessPosterior:
     may_be_best: BoolArray
     """Which of the evaluations may be on the front, shape (n,); the others only inform."""
 
-    is_free_of_noise: tuple[bool, ...]
+    lacks_noise: tuple[bool, ...]
     """For which of the m objectives a model without noise was taken in place of one with noise."""
 
     @property
@@ -276,10 +276,6 @@ class GaussianProcessPosterior:
         nothing = np.zeros(len(self.may_be_best), dtype=bool)
         set_aside = [nothing if p.offsets is None else ~p.offsets.says_something for p in self.processes]
         return np.column_stack(set_aside)[self.may_be_best]
-
-    def lacks_noise(self) -> tuple[bool, ...]:
-        """Return for which of the m objectives this fit took a model without noise in place of one with noise."""
-        return self.is_free_of_noise
 
     def predict(self, X: FloatArray) -> Prediction:
         """Predict the noise-free objectives at n points, shape (n, d)."""

@@ -242,6 +242,7 @@ class ForestPosterior:
         """None: a forest does not ask whether the others foretell an evaluation."""
         return
 
+    @property
     def lacks_noise(self) -> tuple[bool, ...]:
         """None of the objectives does: a forest has no noise to do without."""
         return (False,) * len(self.forests)

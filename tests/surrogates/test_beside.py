@@ -106,7 +106,7 @@ def test_drawn_functions_are_as_unsure_as_the_predictions() -> None:
         ORDERED,
         offsets=Offsets(is_beside, SHARED, np.zeros(4)),
     )
-    posterior = GaussianProcessPosterior(processes=(process,), may_be_best=~is_beside, is_free_of_noise=(False,))
+    posterior = GaussianProcessPosterior(processes=(process,), may_be_best=~is_beside, lacks_noise=(False,))
     Z, rng = process.X[2:], np.random.default_rng(1)
     draws = np.array([posterior.sample_path(rng, 512)(Z).mean[0, :, 0] for _ in range(500)])
     prediction = posterior.predict(Z)
