@@ -11,8 +11,8 @@ from contenders import Answered, Contender, ContenderError, Task
 from problems import Problem
 from problems.base import FloatArray
 
-from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.pareto.hypervolume import hypervolume_trace
+from hypermap_lite.quasi_random import sobol_points
 
 COLUMNS = (
     *("problem", "method", "seed", "evaluations", "design", "half", "final"),

@@ -12,6 +12,7 @@ ROOT = Path(__file__).parents[1]
 
 LAYERS = (
     ("errors", "typing"),
+    ("quasi_random",),
     ("priors", "objectives", "pareto"),
     ("space",),
     ("evaluation.outcome", "evaluation.placeholders"),

@@ -13,9 +13,9 @@ from hypermap_lite.acquisition.improvement import SMOOTHING, log_sum_exp
 from hypermap_lite.acquisition.prior_weighted import PriorWeighted, check_prior_free
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
+from hypermap_lite.quasi_random import quasi_normal
 from hypermap_lite.scalarization.base import Normalization, Scalarization
 from hypermap_lite.surrogates.base import Conditional, Field
-from hypermap_lite.surrogates.gaussian_process import quasi_normal
 from hypermap_lite.typing import FloatArray
 
 SAMPLES = 64

@@ -10,7 +10,7 @@ import numpy as np
 from hypermap_lite.acquisition.base import AcquisitionContext, Scorer
 from hypermap_lite.acquisition.expected_improvement import check_samples
 from hypermap_lite.acquisition.improvement import LinearImprovement, SampledImprovement
-from hypermap_lite.surrogates.gaussian_process import quasi_normal
+from hypermap_lite.quasi_random import quasi_normal
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hypermap_lite.design.base import distinct
-from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
+from hypermap_lite.quasi_random import sobol_points
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import BoolArray, FloatArray, Rng
 

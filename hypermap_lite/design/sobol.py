@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from hypermap_lite.design.base import distinct
 from hypermap_lite.priors.product import ProductPrior
+from hypermap_lite.quasi_random import sobol_points
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import FloatArray, Rng
 
@@ -26,11 +27,3 @@ class Sobol:
         """Return n different points, shape (n, d)."""
         X = sobol_points(OVERSAMPLING * n if space.constraints else n, space.dimension, rng)
         return distinct(space, X, n, lambda k: rng.random((k, space.dimension)), rng)
-
-
-def sobol_points(n: int, dimension: int, rng: Rng) -> FloatArray:
-    """Return the first n points of a freshly scrambled Sobol sequence, shape (n, dimension)."""
-    from scipy.stats import qmc  # slow to import, and not needed to check a scenario
-
-    exponent = max(n - 1, 0).bit_length()
-    return qmc.Sobol(dimension, scramble=True, rng=rng).random_base2(exponent)[:n]

@@ -10,9 +10,9 @@ import numpy as np
 
 from hypermap_lite.acquisition.base import Scorer, rough_of
 from hypermap_lite.design.base import ENUMERATION_LIMIT
-from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.errors import ScenarioError
 from hypermap_lite.priors.product import ProductPrior
+from hypermap_lite.quasi_random import sobol_points
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.space.walk import spread
 from hypermap_lite.typing import BoolArray, FloatArray, Rng

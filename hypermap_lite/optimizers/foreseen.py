@@ -7,11 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.history.history import History
 from hypermap_lite.objectives import stated_or
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.pareto.hypervolume import infer_reference_point
+from hypermap_lite.quasi_random import sobol_points
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.surrogates.base import Posterior
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior

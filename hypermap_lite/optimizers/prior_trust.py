@@ -22,9 +22,9 @@ from typing import Final
 
 import numpy as np
 
-from hypermap_lite.design.sobol import sobol_points
 from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.priors.beliefs import Belief
+from hypermap_lite.quasi_random import sobol_points
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.surrogates.base import Prediction, Predictor
 from hypermap_lite.typing import FloatArray, Rng

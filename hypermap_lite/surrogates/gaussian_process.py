@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtri
 
 from hypermap_lite.errors import ScenarioError
+from hypermap_lite.quasi_random import quasi_normal
 from hypermap_lite.surrogates.base import (
     NO_PERMUTATIONS,
     Conditional,
@@ -378,17 +378,3 @@ def combine(fields: Sequence[ProcessField], X: FloatArray) -> Conditional:
         return np.sum([a[2](by_mean[:, :, k], std_total[:, k]) for k, a in enumerate(answers)], axis=0)
 
     return Conditional(mean=mean, std=std, pullback=pullback)
-
-
-def quasi_normal(n: int, dimension: int, rng: Rng) -> FloatArray:
-    """Return n standard normal draws from a scrambled Sobol sequence, shape (n, dimension).
-
-    Beyond the sequence's largest dimension the rest is filled with ordinary draws.
-    """
-    from scipy.stats import qmc
-
-    sobol_dimension = min(dimension, qmc.Sobol.MAXDIM)
-    exponent = max(n - 1, 0).bit_length()
-    points = qmc.Sobol(sobol_dimension, scramble=True, rng=rng).random_base2(exponent)[:n]
-    normal = ndtri(np.clip(points, 1e-12, 1 - 1e-12))
-    return np.hstack([normal, rng.standard_normal((n, dimension - sobol_dimension))])

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hypermap_lite.quasi_random import sobol_points
 from hypermap_lite.space.search_space import SearchSpace
 from hypermap_lite.typing import FloatArray, Rng
 
@@ -41,10 +42,8 @@ def total_sobol_indices(
     ----------
     .. [1] Jansen. Analysis of variance designs for model output. Computer Physics Communications, 1999, eq. 2.
     """
-    from scipy.stats import qmc  # slow to import, used here only
-
     d = space.dimension
-    draws = qmc.Sobol(2 * d, scramble=True, rng=rng).random(points)
+    draws = sobol_points(points, 2 * d, rng)
     A, B = space.snap(draws[:, :d]), space.snap(draws[:, d:])
     values = function(A)  # (n, m)
     variance = np.vstack([values, function(B)]).var(axis=0)

@@ -8,7 +8,7 @@ from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 from hypermap_lite.space import PermutationParameter
 from hypermap_lite.space.permutation import EMBEDDINGS
 from hypermap_lite.surrogates import GaussianProcess
-from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior, quasi_normal
+from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior
 from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters
 from hypermap_lite.surrogates.paths import Features
@@ -169,13 +169,6 @@ def test_features_of_categories_average_to_the_kernel() -> None:
 def test_without_noise_the_prediction_goes_through_the_data() -> None:
     prediction = fit(X, Y, noise=False).predict(X)
     assert prediction.mean / Y.std(axis=0) == pytest.approx(Y / Y.std(axis=0), abs=1e-3)
-
-
-def test_quasi_normal_draws_are_standard_normal_beyond_sobols_dimensions() -> None:
-    draws = quasi_normal(64, 21_300, np.random.default_rng(0))
-    assert draws.shape == (64, 21_300)
-    assert draws[:, -50:].std() == pytest.approx(1.0, abs=0.05)
-    assert draws[:, :50].mean(axis=0) == pytest.approx(np.zeros(50), abs=0.06)
 
 
 @pytest.mark.parametrize("kernel", EMBEDDINGS)
