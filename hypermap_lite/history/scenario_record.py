@@ -15,6 +15,7 @@ from hypermap_lite import __version__
 from hypermap_lite.errors import RunFolderError
 from hypermap_lite.history.added_later import ADDED_LATER
 from hypermap_lite.history.files import write_atomically
+from hypermap_lite.history.processor import processor_in_use
 
 logger = logging.getLogger(__name__)
 
@@ -184,14 +185,14 @@ def versions_in_use(function: str | None = None) -> dict[str, str]:
 
 
 def installed_versions() -> dict[str, str]:
-    """Return the versions of this package, of Python and of the libraries that do the arithmetic."""
+    """Return the versions of this package, of Python and of the libraries that do the arithmetic, and the processor."""
     versions = {"hypermap_lite": __version__, "python": platform.python_version()}
     for name in LIBRARIES:
         try:
             versions[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
             continue
-    return versions
+    return {**versions, "processor": processor_in_use()}
 
 
 def _leaves(place: str, value: Any) -> Iterator[tuple[str, str]]:

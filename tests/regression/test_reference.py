@@ -1,7 +1,7 @@
 """The stored results in outputs/reference are still what the code says, and what it does.
 
-Hypervolumes are compared exactly; suggestions too, where the libraries are those that made the results: they depend on
-the last bits of linear algebra. Physics is compared up to `TOLERANCE`.
+Hypervolumes are compared exactly; suggestions where the libraries are those that made the results, to the last digit
+where the processor is, too: they depend on how linear algebra rounds. Physics is compared up to `TOLERANCE`.
 """
 
 from __future__ import annotations
@@ -34,6 +34,9 @@ ALL_STUDIES = {file.stem for file in (ROOT / "example_scenarios" / "robot" / "st
 
 TOLERANCE = 1e-6
 """Of a mean objective of the design, relative to its size."""
+
+ROUNDING = 1e-3
+"""Distance in the unit cube by which a suggestion may differ on another processor."""
 
 LIMIT = 10_000_000
 """Bytes that the stored results may take in all."""
@@ -71,10 +74,15 @@ def evaluations_of(run: Path) -> list[Evaluation]:
     return read_history(run / "history.csv", history.space, history.objectives)
 
 
+def versions_of(run: Path) -> dict[str, str]:
+    versions: dict[str, str] = json.loads((run / "scenario.json").read_text())["versions"]
+    return versions
+
+
 def require_the_same_libraries(run: Path) -> None:
-    stored = json.loads((run / "scenario.json").read_text())["versions"]
-    now = installed_versions()
-    changed = [name for name in now if name not in ("python", "hypermap_lite") and stored.get(name) != now[name]]
+    stored, now = versions_of(run), installed_versions()
+    libraries = [name for name in now if name not in ("python", "hypermap_lite", "processor")]
+    changed = [name for name in libraries if stored.get(name) != now[name]]
     if changed or platform.machine() != "x86_64":
         pytest.skip(f"made with other versions of {', '.join(changed) or 'the processor'}")
 
@@ -140,11 +148,17 @@ def test_optimizer_suggests_again_what_is_stored(folder: Path) -> None:
     scenario = json.loads((folder / "scenario.json").read_text())
     n = scenario["budget"]["batch_size"]
     n_design = scenario["design_of_experiment"]["number_of_samples"]
+    is_exact = versions_of(folder).get("processor") == installed_versions()["processor"]
     # the first batch, the first after the design, and the last whole one, each at a multiple of the batch size
     for done in (0, -(-n_design // n) * n, (len(stored) - n) // n * n):
         optimizer = Optimizer(scenario, evaluations=stored[:done])
         expected = [evaluation.configuration for evaluation in stored[done : done + n]]
-        assert [suggestion.configuration for suggestion in optimizer.ask(n)] == expected
+        found = [suggestion.configuration for suggestion in optimizer.ask(n)]
+        if is_exact or done == 0:
+            assert found == expected
+        else:  # the rest of a batch keeps its distance from the first one, so a last digit may change much
+            first = optimizer.history.space.encode([found[0], expected[0]])
+            assert first[0] == pytest.approx(first[1], abs=ROUNDING)
 
 
 @pytest.mark.parametrize("folder", [run for run in RUNS if run.parent.name == "no_prior"], ids=name_of)
