@@ -168,6 +168,25 @@ def test_while_all_are_infeasible_each_point_of_the_designs_sequence_has_its_tur
     assert all((e.suggestion.acquisition_value is None) == (e.suggestion.phase != "model") for e in optimizer.history)
 
 
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_no_point_of_the_sequence_has_two_turns_however_its_digits_are_rounded(scale: str) -> None:
+    bounds = {"wire": [0.05, 2], "coil": [0.25, 1.3], "number": [2, 15]}
+    parameters = {name: {"parameter_type": "real", "values": values, "scale": scale} for name, values in bounds.items()}
+    for seed in range(3, 6):
+        scenario = scenario_of(
+            input_parameters=parameters,
+            design_of_experiment={"type": "sobol", "number_of_samples": 8},
+            budget={"evaluations": 90},
+            seed=seed,
+        )
+        optimizer = all_infeasible(scenario, 90)
+        X = optimizer.history.X_all()
+        distances = np.abs(X[:, None] - X[None]).max(axis=2) + np.eye(len(X))
+        assert distances.min() > 1e-6
+        first = Sobol().points(optimizer.history.space, ProductPrior(3), 49, generator(seed, Stream.DESIGN))
+        assert np.abs(first[:, None] - X[None]).max(axis=2).min(axis=1).max() < 1e-9
+
+
 def test_a_region_at_a_bound_of_one_axis_is_found_though_the_classifier_looks_elsewhere() -> None:
     def n_until_feasible(acquisition: Mapping[str, Any]) -> int:
         parameters = {f"x{j}": {"parameter_type": "real", "values": [0, 1]} for j in range(4)}
