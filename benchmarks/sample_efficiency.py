@@ -2,8 +2,8 @@
 
     python benchmarks/sample_efficiency.py TABLE [--seeds 10] [--problems NAME,...] [--methods NAME,...]
 
-TABLE is `single`, `several`, `constrained`, `limits`, `skills`, `many`, `tails`, `failing` or `ablation`; `page` only
-writes the page and the pictures again.
+TABLE is `single`, `several`, `constrained`, `limits`, `skills`, `many`, `mixed`, `tails`, `failing` or `ablation`;
+`page` only writes the page and the pictures again.
 All methods begin with the same design of 2 (d + 1) points of a scrambled Sobol sequence, with the same noise, and go on
 one evaluation at a time, with one thread of linear algebra. Rows are written as they are measured and a case that has
 its row is not run again, so an interrupted benchmark goes on; `--again` forgets the rows of a method whose code has
@@ -30,7 +30,7 @@ from contenders import Contender, Task
 from efficiency_page import write_page
 from methods import DEFAULT, METHODS, PEERS, Method, ours, starter
 from one_run import COLUMNS, KEY, run
-from problems import CONSTRAINED, EMULATED, FAILING, LIMITS, MANY, PROBLEMS, SEVERAL, SINGLE, SKILLS, TAILS
+from problems import CONSTRAINED, EMULATED, FAILING, LIMITS, MANY, MIXED, PROBLEMS, SEVERAL, SINGLE, SKILLS, TAILS
 from reporting import ResultTable
 from threadpoolctl import threadpool_limits
 
@@ -69,6 +69,7 @@ TABLES: Mapping[str, Table] = {
         problems=tuple(MANY),
         methods=(*COMPARED, *OF_FAILURES),
     ),
+    "mixed": Table(title="Categories, integers and lists of values", problems=tuple(MIXED)),
     "tails": Table(
         title="Values over decades: functions, and penalties for failures",
         problems=tuple(TAILS),

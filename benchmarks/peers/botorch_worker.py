@@ -2,7 +2,8 @@
 
 10 restarts from 512 raw samples, 128 quasi-Monte-Carlo samples, baseline pruned. Where configurations may be forbidden,
 a further outcome, -1 if allowed and 1 if not, is modelled like the others and is the tutorials' outcome constraint.
-Spaces with categories have a `MixedSingleTaskGP` and the alternating search over reals and categories.
+Spaces with categories have a `MixedSingleTaskGP`; in those and in spaces with integers or lists of values, the search
+alternates between reals and the rest.
 """
 
 from __future__ import annotations
@@ -21,40 +22,55 @@ from botorch.models import MixedSingleTaskGP, ModelListGP, SingleTaskGP
 from botorch.optim import optimize_acqf, optimize_acqf_mixed_alternating
 from botorch.sampling import SobolQMCNormalSampler
 from gpytorch.mlls import SumMarginalLogLikelihood
-from loop import Evaluate, is_categorical, serve
+from loop import Evaluate, serve
 from torch import Tensor
 
 RESTARTS, RAW_SAMPLES, SAMPLES = 10, 512, 128
 
 
 class Box:
-    """Configurations as points: reals in the unit interval, categories as positions in their lists."""
+    """Configurations as points: reals in the unit interval, for the rest positions among their values."""
 
     def __init__(self, parameters: Mapping[str, Mapping[str, Any]]) -> None:
         self.parameters = parameters
-        self.categories = {
-            j: list(range(len(p["values"]))) for j, p in enumerate(parameters.values()) if is_categorical(p)
-        }
-        upper = [float(self.categories[j][-1]) if j in self.categories else 1.0 for j in range(len(parameters))]
+        self._levels = {name: levels(p) for name, p in parameters.items() if p["parameter_type"] != "real"}
+        self.categories, self.ordered = (
+            {
+                j: [float(v) for v in range(len(self._levels[name]))]
+                for j, (name, p) in enumerate(parameters.items())
+                if p["parameter_type"] in kinds
+            }
+            for kinds in (("categorical",), ("integer", "ordinal"))
+        )
+        last = {**self.categories, **self.ordered}
+        upper = [last[j][-1] if j in last else 1.0 for j in range(len(parameters))]
         self.bounds = torch.tensor([[0.0] * len(upper), upper], dtype=torch.double)
 
     def point(self, configuration: Mapping[str, Any]) -> list[float]:
         """Return the point of a configuration."""
-        return [self._encoded(p, configuration[name]) for name, p in self.parameters.items()]
+        return [self._encoded(name, configuration[name]) for name in self.parameters]
 
-    def _encoded(self, parameter: Mapping[str, Any], value: Any) -> float:
-        values = parameter["values"]
-        return (
-            float(values.index(value)) if is_categorical(parameter) else (value - values[0]) / (values[1] - values[0])
-        )
+    def _encoded(self, name: str, value: Any) -> float:
+        if name in self._levels:
+            return float(self._levels[name].index(value))
+        low, high = self.parameters[name]["values"]
+        return (value - low) / (high - low)
 
     def configuration(self, x: list[float]) -> dict[str, Any]:
         """Return the configuration at a point."""
-        return {name: self._decoded(p, u) for (name, p), u in zip(self.parameters.items(), x, strict=True)}
+        return {name: self._decoded(name, u) for name, u in zip(self.parameters, x, strict=True)}
 
-    def _decoded(self, parameter: Mapping[str, Any], u: float) -> Any:
-        values = parameter["values"]
-        return values[round(u)] if is_categorical(parameter) else values[0] + u * (values[1] - values[0])
+    def _decoded(self, name: str, u: float) -> Any:
+        if name in self._levels:
+            return self._levels[name][round(u)]
+        low, high = self.parameters[name]["values"]
+        return low + u * (high - low)
+
+
+def levels(parameter: Mapping[str, Any]) -> list[Any]:
+    """Return the values of a parameter that is not real."""
+    values: list[Any] = parameter["values"]
+    return list(range(values[0], values[1] + 1)) if parameter["parameter_type"] == "integer" else values
 
 
 def run(task: Mapping[str, Any], evaluate: Evaluate) -> None:
@@ -114,9 +130,9 @@ def acquisition_function(task: Mapping[str, Any], model: ModelListGP, X: Tensor)
 def best_point(acquisition: AcquisitionFunction, box: Box) -> list[float]:
     """Return the maximizer of an acquisition function."""
     settings = {"q": 1, "num_restarts": RESTARTS, "raw_samples": RAW_SAMPLES}
-    if box.categories:
-        cat_dims = {j: [float(v) for v in values] for j, values in box.categories.items()}
-        x, _ = optimize_acqf_mixed_alternating(acquisition, bounds=box.bounds, cat_dims=cat_dims, **settings)
+    if box.categories or box.ordered:
+        dims = {"cat_dims": box.categories or None, "discrete_dims": box.ordered or None}
+        x, _ = optimize_acqf_mixed_alternating(acquisition, bounds=box.bounds, **dims, **settings)
     else:
         options = {"batch_limit": 5, "maxiter": 200}
         x, _ = optimize_acqf(acquisition, bounds=box.bounds, options=options, **settings)

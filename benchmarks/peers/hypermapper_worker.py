@@ -16,10 +16,12 @@ from typing import Any
 
 import numpy as np
 from hypermapper import optimizer
-from loop import Evaluate, is_categorical, serve
+from loop import Evaluate, serve
 
 MODELS = {"forest": "random_forest", "GP": "gaussian_process"}
 VALID = "Valid"
+KINDS = {"real": float, "ordinal": float, "integer": int, "categorical": str}
+"""What the values of a parameter are."""
 
 
 def run(task: Mapping[str, Any], evaluate: Evaluate) -> None:
@@ -70,10 +72,7 @@ def write_design(task: Mapping[str, Any], file: Path) -> None:
 
 def answered(task: Mapping[str, Any], evaluate: Evaluate, configuration: Mapping[str, Any]) -> Any:
     """Return what HyperMapper wants to know of a configuration."""
-    plain = {
-        name: configuration[name] if is_categorical(p) else float(configuration[name])
-        for name, p in task["parameters"].items()
-    }
+    plain = {name: KINDS[p["parameter_type"]](configuration[name]) for name, p in task["parameters"].items()}
     values, is_feasible = evaluate(plain)
     result = dict(zip(task["objectives"], values, strict=True))
     if task["is_constrained"]:

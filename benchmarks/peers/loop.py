@@ -63,8 +63,3 @@ def serve(run: Callable[[Mapping[str, Any], Evaluate], None]) -> None:
         return answer["values"], answer["is_feasible"]
 
     run(task, evaluate)
-
-
-def is_categorical(parameter: Mapping[str, Any]) -> bool:
-    """Tell whether a parameter has a list of values instead of bounds."""
-    return parameter["parameter_type"] == "categorical"

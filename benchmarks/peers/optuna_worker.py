@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import optuna
-from loop import Evaluate, is_categorical, serve
+from loop import Evaluate, serve
 
 SAMPLERS = {
     "TPE": lambda seed, n: optuna.samplers.TPESampler(multivariate=True, n_startup_trials=n, seed=seed),
@@ -26,7 +26,7 @@ def run(task: Mapping[str, Any], evaluate: Evaluate) -> None:
     study = optuna.create_study(sampler=sampler, directions=["minimize"] * len(task["objectives"]))
     for i in range(task["evaluations"]):
         if i < len(design):
-            study.enqueue_trial(design[i]["configuration"])
+            study.enqueue_trial(as_suggested(task["parameters"], design[i]["configuration"]))
         trial = study.ask()
         configuration = {name: suggested(trial, name, p) for name, p in task["parameters"].items()}
         if i < len(design):
@@ -40,9 +40,23 @@ def run(task: Mapping[str, Any], evaluate: Evaluate) -> None:
 
 def suggested(trial: optuna.Trial, name: str, parameter: Mapping[str, Any]) -> Any:
     """Return the value of a parameter in a trial."""
-    if is_categorical(parameter):
-        return trial.suggest_categorical(name, parameter["values"])
-    return trial.suggest_float(name, *parameter["values"])
+    values = parameter["values"]
+    match parameter["parameter_type"]:
+        case "categorical":
+            return trial.suggest_categorical(name, values)
+        case "ordinal":
+            return values[trial.suggest_int(name, 0, len(values) - 1)]
+        case "integer":
+            return trial.suggest_int(name, *values)
+    return trial.suggest_float(name, *values)
+
+
+def as_suggested(parameters: Mapping[str, Any], configuration: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration as the samplers know it: for values of an ordered list, which Optuna lacks, positions."""
+    return {
+        name: p["values"].index(configuration[name]) if p["parameter_type"] == "ordinal" else configuration[name]
+        for name, p in parameters.items()
+    }
 
 
 if __name__ == "__main__":

@@ -6,21 +6,24 @@ import random
 from collections.abc import Mapping
 from typing import Any
 
-from loop import Evaluate, is_categorical, serve
+from loop import Evaluate, serve
 
 
 def run(task: Mapping[str, Any], evaluate: Evaluate) -> None:
     """Evaluate as many configurations as the task allows."""
     rng = random.Random(task["seed"])
     for _ in range(task["evaluations"] - len(task["design"])):
-        evaluate(
-            {
-                name: rng.choice(parameter["values"])
-                if is_categorical(parameter)
-                else rng.uniform(*parameter["values"])
-                for name, parameter in task["parameters"].items()
-            }
-        )
+        evaluate({name: drawn(rng, parameter) for name, parameter in task["parameters"].items()})
+
+
+def drawn(rng: random.Random, parameter: Mapping[str, Any]) -> Any:
+    """Return a value of a parameter."""
+    match parameter["parameter_type"]:
+        case "real":
+            return rng.uniform(*parameter["values"])
+        case "integer":
+            return rng.randint(*parameter["values"])
+    return rng.choice(parameter["values"])
 
 
 if __name__ == "__main__":

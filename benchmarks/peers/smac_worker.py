@@ -11,12 +11,18 @@ import tempfile
 from collections.abc import Mapping
 from typing import Any
 
-from ConfigSpace import Categorical, Configuration, ConfigurationSpace, Float
-from loop import Evaluate, is_categorical, serve
+from ConfigSpace import Categorical, Configuration, ConfigurationSpace, Float, Integer
+from loop import Evaluate, serve
 from smac import BlackBoxFacade, HyperparameterOptimizationFacade, Scenario
 from smac.multi_objective.parego import ParEGO
 from smac.runhistory import StatusType, TrialValue
 
+KINDS = {
+    "categorical": Categorical,
+    "ordinal": lambda name, values: Categorical(name, values, ordered=True),
+    "integer": lambda name, values: Integer(name, tuple(values)),
+    "real": lambda name, values: Float(name, tuple(values)),
+}
 FACADES = {"forest": HyperparameterOptimizationFacade, "GP": BlackBoxFacade}
 
 
@@ -60,8 +66,7 @@ def space_of(task: Mapping[str, Any]) -> ConfigurationSpace:
     """Return the search space of the task."""
     space = ConfigurationSpace(seed=task["seed"])
     for name, parameter in task["parameters"].items():
-        values = parameter["values"]
-        space.add(Categorical(name, values) if is_categorical(parameter) else Float(name, tuple(values)))
+        space.add(KINDS[parameter["parameter_type"]](name, parameter["values"]))
     return space
 
 

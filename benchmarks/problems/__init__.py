@@ -11,14 +11,15 @@ from .emulated import EMULATED
 from .failing import FAILING
 from .limits import LIMITS
 from .many import MANY
+from .mixed import MIXED
 from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
 from .tails import TAILS
 
 __all__ = [
-    *("CONSTRAINED", "EMULATED", "FAILING", "LIMITS", "MANY", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS", "TAILS"),
-    "Problem",
+    *("CONSTRAINED", "EMULATED", "FAILING", "LIMITS", "MANY", "MIXED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS"),
+    *("TAILS", "Problem"),
 ]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
@@ -32,4 +33,5 @@ PROBLEMS: Mapping[str, Problem] = {
     **TAILS,
     **FAILING,
     **MANY,
+    **MIXED,
 }

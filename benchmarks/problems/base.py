@@ -22,14 +22,14 @@ SPREAD_POINTS = 2**14
 class Problem:
     """One or several functions to minimize over a box, without noise of their own.
 
-    Points are rows of numbers: native values of real parameters, positions in the list of values of categorical ones.
+    Points are rows of numbers: native values, but of categorical parameters their positions in the list of values.
     """
 
     function: Callable[[FloatArray], FloatArray]
     """Objective values, shape (n, m), of points, shape (n, d)."""
 
     parameters: Mapping[str, Mapping[str, Any]]
-    """As in the scenario's ``input_parameters``; real and categorical ones."""
+    """As in the scenario's ``input_parameters``; real, integer, ordinal and categorical ones."""
 
     best: float
     """The smallest value, or the hypervolume of the whole front."""
@@ -91,10 +91,7 @@ class Problem:
     def configurations(self, X: FloatArray) -> list[dict[str, Any]]:
         """Return points as mappings from names to native values."""
         return [
-            {
-                name: parameter["values"][int(x)] if parameter["parameter_type"] == "categorical" else float(x)
-                for (name, parameter), x in zip(self.parameters.items(), row, strict=True)
-            }
+            {name: _native(x, parameter) for (name, parameter), x in zip(self.parameters.items(), row, strict=True)}
             for row in X
         ]
 
@@ -121,8 +118,25 @@ def one_objective(function: Callable[[FloatArray], FloatArray]) -> Callable[[Flo
 
 
 def _scaled(u: FloatArray, parameter: Mapping[str, Any]) -> FloatArray:
-    if parameter["parameter_type"] == "categorical":
-        n = len(parameter["values"])
-        return np.minimum(np.floor(u * n), n - 1)
-    low, high = parameter["values"]
-    return low + u * (high - low)
+    values = parameter["values"]
+    match parameter["parameter_type"]:
+        case "categorical":
+            return _level(u, len(values))
+        case "ordinal":
+            return np.array(values, dtype=float)[_level(u, len(values)).astype(int)]
+        case "integer":
+            return values[0] + _level(u, values[1] - values[0] + 1)
+    return values[0] + u * (values[1] - values[0])
+
+
+def _level(u: FloatArray, n: int) -> FloatArray:
+    return np.minimum(np.floor(u * n), n - 1)
+
+
+def _native(x: float, parameter: Mapping[str, Any]) -> Any:
+    match parameter["parameter_type"]:
+        case "categorical":
+            return parameter["values"][int(x)]
+        case "integer":
+            return int(x)
+    return float(x)

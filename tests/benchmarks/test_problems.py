@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from benchmarks.problems import PROBLEMS
+from benchmarks.problems import MIXED, PROBLEMS
 from benchmarks.problems.emulated import EMULATED, TASKS, Landscape
 from benchmarks.problems.formulas import HARTMANN6_MINIMIZER
-from hypermap_lite import hypervolume, load_scenario
+from hypermap_lite import Optimizer, hypervolume, load_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "example_scenarios" / "robot"
 
@@ -25,6 +25,8 @@ MINIMIZERS = {
     "hartmann6_of_20": [tuple(np.insert(HARTMANN6_MINIMIZER, [0, 0, 0, 2, 2, 2, 2, 3, 4, 4, 4, 4, 5, 6], 0.9))],
     "levy10": [(1,) * 10],
     "func2c": [(1, 1, 0.0898420131 / 2, -0.712656403 / 2), (1, 1, -0.0898420131 / 2, 0.712656403 / 2)],
+    "ackley5c": [(8,) * 5 + (0,)],
+    "hartmann6_mixed": [(0.2047319160, 0.1507811664, 0.4728852930, 0.3, 0.3, 0.7)],
 }
 
 
@@ -57,13 +59,18 @@ def grid(name, n):
         ("sum_beyond5", (0.3, 0.4, 0.5, 0.4, 0.4), 0.775),
         ("tension_spring", (0.0516890, 0.3567177, 11.2889654), 0.016),
         ("hartmann6_ball", tuple(HARTMANN6_MINIMIZER), 0.0805),
+        ("pressure_vessel", (13, 7, 42.0984456, 176.6365958), 0.401),
+        ("coil_spring", (9, 1.22304101, 0.283), 0.0148),
+        ("concrete_beam", (6.32, 34, 8.5), 0.0631),
     ],
 )
 def test_minimum_within_limits_is_where_it_is_said_to_be_and_allowed(name, minimizer, share):
     problem = PROBLEMS[name]
     x, X = np.array([minimizer]), points(name, 100_000)
     assert problem.function(x)[0, 0] == pytest.approx(problem.best, abs=2e-6)
-    near = x + 2e-4 * np.random.default_rng(0).standard_normal((1000, problem.dimension)) * np.ptp(X, axis=0)
+    is_real = [p["parameter_type"] == "real" for p in problem.parameters.values()]
+    steps = np.random.default_rng(0).standard_normal((1000, problem.dimension)) * np.ptp(X, axis=0)
+    near = x + 2e-4 * np.where(is_real, steps, 0)
     assert problem.is_feasible(near).any()
     is_allowed = problem.is_feasible(X)
     assert is_allowed.mean() == pytest.approx(share, abs=0.002)
@@ -85,6 +92,74 @@ def test_minimum_of_func2c_is_that_of_its_best_pair_of_functions():
         for x0 in ([0.1, -0.4], [0.5, 0.5], [-0.5, 0.5])
     ]
     assert min(found) == pytest.approx(problem.best, abs=1e-9)
+
+
+def test_minimum_of_mixed_hartmann_is_that_of_its_best_triple_of_values():
+    problem, levels = PROBLEMS["hartmann6_mixed"], np.linspace(0, 1, 11)
+    start = np.random.default_rng(0).random((200, 3))
+    triples = np.array(list(itertools.product(levels, repeat=3)))
+    X = np.hstack([np.tile(start, (len(triples), 1)), np.repeat(triples, len(start), axis=0)])
+    values = problem.function(X)[:, 0].reshape(len(triples), -1)
+    found = []
+    for i in np.argsort(values.min(axis=1))[:20]:
+        run = minimize(
+            lambda x, h=triples[i]: problem.function(np.array([[*x, *h]]))[0, 0],
+            start[values[i].argmin()],
+            bounds=[(0, 1)] * 3,
+        )
+        found.append(run.fun)
+    assert min(found) == pytest.approx(problem.best, abs=1e-6)
+
+
+@pytest.mark.parametrize(("name", "n_best"), [("nk16", 1), ("labs16", 32)])
+def test_best_switches_are_those_of_all_there_are(name, n_best):
+    problem = PROBLEMS[name]
+    values = problem.function(((np.arange(2**16)[:, None] >> np.arange(16)) & 1).astype(float))[:, 0]
+    assert values.min() == pytest.approx(problem.best, abs=1e-12)
+    assert (values < problem.best + 1e-9).sum() == n_best
+
+
+def test_each_switch_of_the_landscape_matters_to_five_places():
+    problem, rng = PROBLEMS["nk16"], np.random.default_rng(0)
+    X = rng.integers(0, 2, (200, 16)).astype(float)
+    flipped = X.copy()
+    flipped[:, 3] = 1 - flipped[:, 3]
+    change = problem.function(flipped)[:, 0] - problem.function(X)[:, 0]
+    # the worth of the four before it and of itself, which see only themselves and four after them
+    groups = {}
+    for key, value in zip(map(tuple, np.roll(X, 1, axis=1)[:, :9]), change, strict=True):
+        groups.setdefault(key, []).append(value)
+    repeated = [values for values in groups.values() if len(values) > 1]
+    assert len(repeated) > 10
+    assert all(np.ptp(values) < 1e-12 for values in repeated)
+
+
+def test_front_of_mixed_dtlz2_is_that_of_real_parameters():
+    X = np.column_stack([np.linspace(0, 1, 4000), *[np.full(4000, 0.5)] * 2, *[np.full(4000, 4.0)] * 3])
+    assert share("dtlz2_mixed", X) == pytest.approx(1, abs=1e-3)
+    assert share("dtlz2_mixed", X) < 1
+
+
+def test_front_of_the_disc_brake_has_the_largest_forces_that_are_allowed():
+    inner, outer = (u.ravel() for u in np.meshgrid(np.linspace(55, 80, 300), np.linspace(75, 110, 300)))
+    inner, outer = np.column_stack([inner, outer])[outer >= inner + 20].T
+    squares, cubes = outer**2 - inner**2, outer**3 - inner**3
+    force = np.minimum(np.minimum(3000, 0.4 * 3.14 * squares), squares**2 / (2.22e-3 * cubes)) * (1 - 1e-12)
+    brakes = [np.column_stack([inner, outer, force, np.full_like(inner, n)]) for n in range(2, 21)]
+    X = np.vstack([brake[force >= 1000] for brake in brakes])
+    assert 0.999 < share("disc_brake", X) < 1
+    assert PROBLEMS["disc_brake"].is_feasible(points("disc_brake", 100_000)).mean() == pytest.approx(0.338, abs=0.002)
+
+
+@pytest.mark.parametrize("name", MIXED)
+def test_configurations_of_mixed_spaces_are_read_back_as_the_points_they_are(name):
+    problem, X = PROBLEMS[name], points(name, 40)
+    space = Optimizer({"input_parameters": problem.parameters, "objectives": [{"name": "f"}]}).history.space
+    for x, configuration in zip(X, problem.configurations(X), strict=True):
+        values, is_feasible = problem.evaluate(configuration)
+        assert values == pytest.approx(problem.function(x[None])[0], rel=1e-12)
+        assert is_feasible == (problem.is_feasible is None or problem.is_feasible(x[None])[0])
+        assert space.contains(configuration)
 
 
 def test_front_of_zdt2_gives_the_hypervolume_in_closed_form():
