@@ -112,14 +112,15 @@ class EvaluationError(HypermapLiteError, RuntimeError):
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return a hint that names the closest of the known names, or nothing if none is close.
 
-    Close is a slip of the pen (``desgin``), a beginning (``max``), initials (``ei``) or the last
-    words (``type`` of ``parameter_type``) if no other name ends so.
+    Close is a slip of the pen (``desgin``), a beginning (``max``), more than a name (``python_function``), initials
+    (``ei``) or the last words (``type`` of ``parameter_type``) if no other name ends so.
     """
     names = {candidate.casefold(): candidate for candidate in known}
     wanted = name.casefold()
     matches = difflib.get_close_matches(wanted, names, n=1, cutoff=0.6)
     if not matches and len(wanted) > 1:
         matches = [n for n in names if n.startswith(wanted) or wanted == "".join(word[:1] for word in n.split("_"))]
+        matches = matches or [n for n in names if wanted.startswith(f"{n}_")]
         ends = [n for n in names if n.endswith(f"_{wanted}")]
         matches = matches or (ends if len(ends) == 1 else [])
     return f"Did you mean '{names[matches[0]]}'?" if matches else ""
