@@ -112,7 +112,7 @@ def test_another_function_for_the_same_folder_is_warned_of(tmp_path, caplog):
     optimize(SCENARIO, two, output_directory=tmp_path)
     assert "the function called" not in caplog.text
     optimize(SCENARIO, other, output_directory=tmp_path)
-    assert "the function called was tests.test_run.two when this run began and is tests.test_run.test_" in caplog.text
+    assert "the function called was tests.test_run.two before and is tests.test_run.test_" in caplog.text
 
 
 def test_callable_object_is_called_by_its_class():

@@ -29,21 +29,24 @@ RESTARTS, RAW_SAMPLES, SAMPLES = 10, 512, 128
 
 
 class Box:
-    """Configurations as points: reals in the unit interval, for the rest positions among their values."""
+    """Configurations as points: reals and ordered levels in the unit interval, categories as their positions."""
 
     def __init__(self, parameters: Mapping[str, Mapping[str, Any]]) -> None:
         self.parameters = parameters
         self._levels = {name: levels(p) for name, p in parameters.items() if p["parameter_type"] != "real"}
+        self._step = {
+            name: 1.0 if parameters[name]["parameter_type"] == "categorical" else 1.0 / max(len(values) - 1, 1)
+            for name, values in self._levels.items()
+        }
         self.categories, self.ordered = (
             {
-                j: [float(v) for v in range(len(self._levels[name]))]
+                j: [v * self._step[name] for v in range(len(self._levels[name]))]
                 for j, (name, p) in enumerate(parameters.items())
                 if p["parameter_type"] in kinds
             }
             for kinds in (("categorical",), ("integer", "ordinal"))
         )
-        last = {**self.categories, **self.ordered}
-        upper = [last[j][-1] if j in last else 1.0 for j in range(len(parameters))]
+        upper = [self.categories[j][-1] if j in self.categories else 1.0 for j in range(len(parameters))]
         self.bounds = torch.tensor([[0.0] * len(upper), upper], dtype=torch.double)
 
     def point(self, configuration: Mapping[str, Any]) -> list[float]:
@@ -52,7 +55,7 @@ class Box:
 
     def _encoded(self, name: str, value: Any) -> float:
         if name in self._levels:
-            return float(self._levels[name].index(value))
+            return self._levels[name].index(value) * self._step[name]
         low, high = self.parameters[name]["values"]
         return (value - low) / (high - low)
 
@@ -62,7 +65,7 @@ class Box:
 
     def _decoded(self, name: str, u: float) -> Any:
         if name in self._levels:
-            return self._levels[name][round(u)]
+            return self._levels[name][round(u / self._step[name])]
         low, high = self.parameters[name]["values"]
         return low + u * (high - low)
 

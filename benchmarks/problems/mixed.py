@@ -155,8 +155,9 @@ def brake_objectives(X: FloatArray) -> FloatArray:
        Optimization. Engineering Optimization, 2002.
     """
     inner, outer, force, surfaces = X.T
-    squares, cubes = outer**2 - inner**2, outer**3 - inner**3
-    return np.column_stack([4.9e-5 * squares * (surfaces - 1), 9.82e6 * squares / (force * surfaces * cubes)])
+    mass = 4.9e-5 * (outer**2 - inner**2) * (surfaces - 1)
+    lever = (outer**2 + outer * inner + inner**2) / (outer + inner)
+    return np.column_stack([mass, 9.82e6 / (force * surfaces * lever)])
 
 
 def brake_holds(X: FloatArray) -> BoolArray:

@@ -13,7 +13,8 @@ from threadpoolctl import threadpool_info
 def processor_in_use() -> str:
     """Return the machine, NumPy's largest instruction set there and the kernels of linear algebra.
 
-    Such as ``x86_64, X86_V3, openblas Haswell``: equal texts with equal library versions mean equal digits.
+    Such as ``x86_64, X86_V3, openblas Haswell``: with other instructions or kernels digits may differ. What a library
+    does not tell (MKL's kernels, Accelerate) is not in the text.
     """
     found = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
     blas = {

@@ -141,7 +141,7 @@ def _compare_versions(before: Mapping[str, Any], now: Mapping[str, str]) -> None
         old, new = before.get(name, absent), now.get(name, absent)
         if old != new:
             what = "the function called" if name == "function" else name
-            logger.warning("%s was %s when this run began and is %s now; rows may differ", what, old, new)
+            logger.warning("%s was %s before and is %s now; rows may differ", what, old, new)
 
 
 def write_scenario(path: Path, canonical: Mapping[str, Any], function: str | None = None) -> None:

@@ -31,7 +31,6 @@ def points_left(space: SearchSpace, seed: int, taken: list[bytes]) -> FloatArray
     n = len(taken) + WINDOW
     while True:
         X = space.keep_allowed(space.snap(sobol_points(n, space.dimension, generator(seed, Stream.DESIGN))))
-        X = space.encode(space.decode(X))  # as the history has them: the last digits decide what is taken
         left = X[space.unseen(X, taken)][:WINDOW]
         if len(left) == WINDOW or not space.constraints or n >= LONGEST:
             return left

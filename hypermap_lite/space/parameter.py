@@ -72,6 +72,10 @@ class Parameter(ABC):
             return codes
         return self.codes_of_levels(self.level_index(codes))
 
+    def rounded(self, codes: FloatArray) -> FloatArray:
+        """Return codes in [0, 1] rounded as the values are that they decode to, shape (n,)."""
+        return self.snap(codes)
+
     def level_index(self, codes: FloatArray) -> IntArray:
         """Return which level each code decodes to, counted from 0, shape (n,)."""
         inner = self.bin_edges()[1:-1]

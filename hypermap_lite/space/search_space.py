@@ -177,11 +177,13 @@ class SearchSpace:
 
     def _names(self, X: FloatArray) -> FloatArray:
         """Return numbers that are equal, bit by bit, for points that are the same configuration, shape (n, d)."""
-        names = np.round(X, KEY_DECIMALS) + 0.0  # no negative zeros
+        names = np.empty(X.shape)
         for j, parameter in enumerate(self.parameters):
             if parameter.n_levels is not None:
                 names[:, j] = parameter.level_index(X[:, j])
-        return names
+            else:  # rounded twice, for a point and its configuration may lie on two sides of a half of a decimal
+                names[:, j] = np.round(parameter.rounded(X[:, j]), KEY_DECIMALS)
+        return names + 0.0  # no negative zeros
 
     def unseen(self, X: FloatArray, seen: Collection[bytes]) -> BoolArray:
         """Tell which of n points are neither among the seen keys nor a repeat of an earlier row, shape (n,)."""

@@ -196,11 +196,11 @@ def test_function_that_was_passed_is_recorded_and_another_is_warned_of(tmp_path,
         with opened("robot.push"):
             assert caplog.text == ""
         with opened("robot.pull"):
-            assert "the function called was robot.push when this run began and is robot.pull now" in caplog.text
+            assert "the function called was robot.push before and is robot.pull now" in caplog.text
         with opened(None):
-            assert "was robot.pull when this run began and is the scenario's own evaluator now" in caplog.text
+            assert "was robot.pull before and is the scenario's own evaluator now" in caplog.text
         with opened("robot.push"):
-            assert "was the scenario's own evaluator when this run began and is robot.push now" in caplog.text
+            assert "was the scenario's own evaluator before and is robot.push now" in caplog.text
 
 
 def failed(call):

@@ -35,6 +35,22 @@ def test_the_default_is_not_repeated_by_the_design() -> None:
     assert sorted(phase.suggestion(i).configuration["n"] for i in range(len(phase))) == [0, 1, 2]
 
 
+@pytest.mark.parametrize("design", [Sobol(), RandomSampling()])
+def test_rows_that_are_there_are_not_in_the_design_whatever_their_last_digits(design: Sobol | RandomSampling) -> None:
+    space = SearchSpace(
+        tuple(RealParameter(name=f"x{j}", low=a, high=b) for j, (a, b) in enumerate([(0.05, 2), (0.25, 1.3), (2, 15)]))
+    )
+    for seed in range(6):
+        rows = InitialPhase(space, ProductPrior(3), design, 40, seed=seed).configurations[:20]
+        history = History(space, [Objective(name="f")])
+        for trial, row in enumerate(rows):
+            suggestion = Suggestion(trial=trial, configuration=row, phase="earlier")
+            history.append(Evaluation(suggestion=suggestion, state=State.COMPLETED, values={"f": 0.0}))
+        rest = InitialPhase(space, ProductPrior(3), design, 40, seed=seed, history=history).configurations
+        assert len(rest) == 20
+        assert not [c for c in rest if c in rows]
+
+
 def test_there_may_be_no_design() -> None:
     bare = SearchSpace((RealParameter(name="x", low=0, high=1),))
     assert len(InitialPhase(bare, ProductPrior(1), Sobol(), 0, seed=0)) == 0

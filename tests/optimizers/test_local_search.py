@@ -29,6 +29,24 @@ def on_a_line(values: dict[int, float], **options: object):
     return run(scenario, 16, function=lambda c: {"y": values.get(c["n"], 9.0)})
 
 
+@pytest.mark.parametrize(
+    ("scale", "bounds", "seed"),
+    [("linear", [(0.1, 1 / 3), (1e-5, 0.7), (3, 71)], 8), ("log", [(0.05, 2), (0.25, 1.3), (2, 15)], 16)],
+)
+def test_no_point_is_climbed_to_twice_however_its_digits_are_rounded(scale: str, bounds: list, seed: int) -> None:
+    parameters = {
+        f"x{j}": {"parameter_type": "real", "values": list(pair), "scale": scale} for j, pair in enumerate(bounds)
+    }
+
+    def bowl(configuration):
+        shares = [(configuration[f"x{j}"] - low) / (high - low) for j, (low, high) in enumerate(bounds)]
+        return {"f": sum((share - 0.6) ** 2 for share in shares)}
+
+    scenario = {"input_parameters": parameters, "objectives": [{"name": "f"}], "optimizer": search(), "seed": seed}
+    history = run({**scenario, "budget": {"evaluations": 80}}, 80, function=bowl).history
+    assert len({tuple(e.configuration.values()) for e in history}) == 80
+
+
 def test_the_first_points_are_the_random_points() -> None:
     phases = [
         e.suggestion.phase

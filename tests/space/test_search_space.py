@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -23,6 +24,19 @@ def test_configurations_encode_and_decode_exactly(space: SearchSpace, seed: int)
 def test_snapping_twice_changes_nothing(space: SearchSpace, seed: int) -> None:
     X = space.sample_uniform(7, np.random.default_rng(seed))
     assert np.array_equal(space.snap(X), X)
+
+
+@pytest.mark.parametrize("log", [False, True])
+@pytest.mark.parametrize(("low", "high"), [(0.05, 2), (0.25, 1.3), (2, 15), (1e-5, 0.7), (288.5, 303.25), (1e3, 1e7)])
+def test_a_point_and_its_configuration_have_the_same_key(low: float, high: float, log: bool) -> None:
+    space = SearchSpace((RealParameter(name="x", low=low, high=high, log=log),))
+    X = np.random.default_rng(0).integers(0, 2**30, (20_000, 1)) / 2**30
+    X[:2] = [[0.0], [1 - 1e-16]]
+    told = space.encode(space.decode(X))
+    assert space.keys(X) == space.keys(told)
+    assert not space.unseen(X, space.keys(told)).any()
+    names = np.frombuffer(b"".join(space.keys(X)))
+    assert np.abs(names - X[:, 0]).max() < 1e-10
 
 
 def test_a_finite_space_counts_and_lists_its_configurations() -> None:
