@@ -96,7 +96,7 @@ def _tokens(parameter: Parameter, column: Sequence[str]) -> list[Hashable]:
 
 
 def _rounded(parameter: Parameter, values: Sequence[Value]) -> list[float]:
-    return (np.round(parameter.encode(values), KEY_DECIMALS) + 0.0).tolist()  # no negative zeros
+    return (np.round(parameter.rounded(parameter.encode(values)), KEY_DECIMALS) + 0.0).tolist()  # no negative zeros
 
 
 def value_of(parameter: Parameter, text: str) -> Value | None:

@@ -2,6 +2,7 @@
 
 import pickle
 
+import numpy as np
 import pytest
 
 from hypermap_lite.errors import EvaluationError, ScenarioError
@@ -99,6 +100,14 @@ def test_file_is_looked_for_in_its_folders_in_order(tmp_path):
     found = Exhaustive(file="table.csv", objectives=("cost",), space=SPACE, folders=(tmp_path / "a", tmp_path / "b"))
     assert found.n_known == 5
     assert pickle.loads(pickle.dumps(found)).n_known == 5
+
+
+def test_values_of_many_digits_are_found_by_the_configurations_they_are_rounded_to(tmp_path):
+    space = SearchSpace((RealParameter(name="x", low=0.05, high=2),))
+    values = np.random.default_rng(0).uniform(0.05, 2, 2000)
+    found = table(tmp_path, "x,cost\n" + "".join(f"{x!r},{i}\n" for i, x in enumerate(values.tolist())), space)
+    asked = space.decode(space.encode([{"x": x} for x in values.tolist()]))
+    assert [look_up(found, tmp_path, **c).values["cost"] for c in asked] == [*range(2000)]
 
 
 def test_of_a_large_table_each_text_of_a_column_is_read_once_and_a_look_up_reads_none(tmp_path, monkeypatch):
