@@ -3,7 +3,8 @@
 A variant is a list of changes to the scenario, as `--set` takes them; each changes one default and leaves the rest.
 `OF_FEASIBILITY` holds those that change nothing without an unknown constraint, `OF_TAILS` those that change next to
 nothing without values far beyond the rest, `OF_OUTLIERS` those that matter where evaluations fail without a reason,
-`OF_FAILURES` where they fail with one, `OF_NOISE` those that change nothing with several objectives.
+`OF_FAILURES` where they fail with one, `OF_MODES` where the front needs two kinds of outcomes, `OF_NOISE` those that
+change nothing with several objectives.
 """
 
 from __future__ import annotations
@@ -38,3 +39,4 @@ OF_TAILS: Mapping[str, Sequence[str]] = {"tails as they are": ("surrogate.compre
 OF_OUTLIERS: Mapping[str, Sequence[str]] = {"outliers believed": ("surrogate.ignore_outliers=false",)}
 OF_NOISE: Mapping[str, Sequence[str]] = {"noise believed": ("surrogate.doubt_noise=false",)}
 OF_FAILURES: Mapping[str, Sequence[str]] = {"failures among the rest": ("surrogate.separate_failures=false",)}
+OF_MODES: Mapping[str, Sequence[str]] = {"modes among the rest": ("surrogate.separate_modes=false",)}

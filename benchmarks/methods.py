@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_NOISE, OF_OUTLIERS, OF_TAILS
+from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_MODES, OF_NOISE, OF_OUTLIERS, OF_TAILS
 from contenders import WORKERS, Contender, Ours, Peer, Spread, Task
 
 COMMAND = "#     "
@@ -53,7 +53,7 @@ METHODS: Mapping[str, Method] = {
     "HyperMapper GP": peer("hypermapper", "GP"),
     **{
         name: ours(overrides=changes)
-        for variants in (ABLATIONS, OF_FEASIBILITY, OF_TAILS, OF_OUTLIERS, OF_FAILURES, OF_NOISE)
+        for variants in (ABLATIONS, OF_FEASIBILITY, OF_TAILS, OF_OUTLIERS, OF_FAILURES, OF_MODES, OF_NOISE)
         for name, changes in variants.items()
     },
 }

@@ -25,12 +25,25 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_NOISE, OF_OUTLIERS, OF_TAILS
+from ablations import ABLATIONS, OF_FAILURES, OF_FEASIBILITY, OF_MODES, OF_NOISE, OF_OUTLIERS, OF_TAILS
 from contenders import Contender, Task
 from efficiency_page import write_page
 from methods import DEFAULT, METHODS, PEERS, Method, ours, starter
 from one_run import COLUMNS, KEY, run
-from problems import CONSTRAINED, EMULATED, FAILING, LIMITS, MANY, MIXED, PROBLEMS, SEVERAL, SINGLE, SKILLS, TAILS
+from problems import (
+    CONSTRAINED,
+    EMULATED,
+    FAILING,
+    LIMITS,
+    MANY,
+    MIXED,
+    MODES,
+    PROBLEMS,
+    SEVERAL,
+    SINGLE,
+    SKILLS,
+    TAILS,
+)
 from reporting import ResultTable
 from threadpoolctl import threadpool_limits
 
@@ -63,6 +76,11 @@ TABLES: Mapping[str, Table] = {
         title="Skills: a plateau of failure, and the emulated robot tasks",
         problems=tuple(SKILLS),
         methods=(*COMPARED, *OF_FAILURES),
+    ),
+    "modes": Table(
+        title="Skills of which the front needs two kinds of outcomes",
+        problems=tuple(MODES),
+        methods=(*COMPARED, *OF_MODES),
     ),
     "many": Table(
         title="Ten to twenty parameters, 100 evaluations",

@@ -12,14 +12,15 @@ from .failing import FAILING
 from .limits import LIMITS
 from .many import MANY
 from .mixed import MIXED
+from .modes import MODES
 from .plateau import PLATEAU
 from .several import SEVERAL
 from .single import SINGLE
 from .tails import TAILS
 
 __all__ = [
-    *("CONSTRAINED", "EMULATED", "FAILING", "LIMITS", "MANY", "MIXED", "PROBLEMS", "SEVERAL", "SINGLE", "SKILLS"),
-    *("TAILS", "Problem"),
+    *("CONSTRAINED", "EMULATED", "FAILING", "LIMITS", "MANY", "MIXED", "MODES", "PROBLEMS", "SEVERAL", "SINGLE"),
+    *("SKILLS", "TAILS", "Problem"),
 ]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
@@ -30,6 +31,7 @@ PROBLEMS: Mapping[str, Problem] = {
     **CONSTRAINED,
     **LIMITS,
     **SKILLS,
+    **MODES,
     **TAILS,
     **FAILING,
     **MANY,

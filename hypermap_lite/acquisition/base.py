@@ -39,6 +39,9 @@ class AcquisitionContext:
     reference_point: FloatArray | None = None
     """Worst objectives that still count, shape (m,); None if an objective has none."""
 
+    beside: FloatArray | None = None
+    """Objectives of k evaluations that the posterior does not know and the front has, shape (k, m); None for none."""
+
     iteration: int = 1
     """Running number, from 1, of the batch of model-based suggestions this one belongs to."""
 
@@ -86,6 +89,11 @@ class Acquisition(Protocol):
 
 class PriorWeighting(Protocol):
     """Options of how the user's prior enters the choice, and for how long."""
+
+    @property
+    def is_factor(self) -> bool:
+        """Whether the prior is a factor of the acquisition value, not part of an acquisition function of its own."""
+        ...
 
     @property
     def prior_free(self) -> float:

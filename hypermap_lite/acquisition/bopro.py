@@ -60,6 +60,11 @@ class Bopro:
     make_up: bool = True
     """Whether uniform draws make up for those that the design took from a prior that is dropped."""
 
+    @property
+    def is_factor(self) -> bool:
+        """False."""
+        return False
+
     def __post_init__(self) -> None:
         check_prior_free(self.prior_free)
         if not self.model_weight > 0:

@@ -11,7 +11,7 @@ import numpy as np
 from hypermap_lite.acquisition.base import Acquisition, AcquisitionContext, Rough, Scorer, rough_of
 from hypermap_lite.acquisition.improvement import SMOOTHING, log_softplus
 from hypermap_lite.errors import ScenarioError
-from hypermap_lite.surrogates.base import Permutations, Posterior
+from hypermap_lite.surrogates.base import Permutations, Predictor
 from hypermap_lite.surrogates.feasibility import (
     Approximation,
     FeasibilityModel,
@@ -177,7 +177,7 @@ class FeasibilitySearch:
         return log_probability + log_novelty, slope + novelty_slope
 
 
-def optimistic_ideal(posterior: Posterior, feasibility: FeasibilityPosterior, X: FloatArray) -> FloatArray:
+def optimistic_ideal(posterior: Predictor, feasibility: FeasibilityPosterior, X: FloatArray) -> FloatArray:
     """Return the least mean minus std of each objective among the points that are probably feasible, shape (m,).
 
     Infinite if none of the n points, shape (n, d), is.

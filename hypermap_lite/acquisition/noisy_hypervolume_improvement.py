@@ -77,6 +77,9 @@ class NoisyExpectedHypervolumeImprovement:
         if not is_known:
             fantasies = posterior.fantasies(context.X_pending, self.samples, context.rng)
             fronts, field = fantasies.values, fantasies.field
+        if context.beside is not None:
+            beside = np.broadcast_to(context.beside, (len(fronts), *context.beside.shape))
+            fronts = np.concatenate([fronts, beside], axis=1)
         return HypervolumeImprovement(
             field=_Scaled(field, scale),
             screening=self.screening,

@@ -44,6 +44,11 @@ class Pibo:
     make_up: bool = True
     """Whether uniform draws make up for those that the design took from a prior that is dropped."""
 
+    @property
+    def is_factor(self) -> bool:
+        """True."""
+        return True
+
     def __post_init__(self) -> None:
         check_prior_free(self.prior_free)
         if self.beta is not None and not self.beta >= 0:

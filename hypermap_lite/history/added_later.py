@@ -36,5 +36,6 @@ ADDED_LATER: Final[Mapping[str, str]] = {
     "$.surrogate.noise_tail": "2",
     "$.surrogate.restart": "true",
     "$.surrogate.separate_failures": "false",
+    "$.surrogate.separate_modes": "false",
 }
 """Their places, and the values (as JSON) that scenarios without them are taken to have: those that change nothing."""

@@ -26,6 +26,7 @@ from hypermap_lite.optimizers.guidance import Guidance, Guide
 from hypermap_lite.optimizers.initial import InitialPhase
 from hypermap_lite.optimizers.method import Method
 from hypermap_lite.optimizers.models import MIN_COMPLETED, Models
+from hypermap_lite.optimizers.modes import outliers_of
 from hypermap_lite.optimizers.next_feasible import attempt, draw_near
 from hypermap_lite.optimizers.stagnation import NEXT_TO_NOTHING, draws_at_end, is_in_the_dark, stands_still
 from hypermap_lite.optimizers.streams import Stream, generator
@@ -34,7 +35,7 @@ from hypermap_lite.priors.beliefs import Belief
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scalarization.base import Normalization
 from hypermap_lite.space.real import FEWEST_CHECKED
-from hypermap_lite.surrogates.base import Posterior, Predictor
+from hypermap_lite.surrogates.base import Knowledge, Posterior, Predictor
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.surrogates.reported import AsReported
 from hypermap_lite.typing import FloatArray, Rng
@@ -86,7 +87,15 @@ class BayesianOptimizer(Optimizer):
         self._budget = budget
         self._batch_size = batch_size
         self._seed = seed
-        self._separate = SeparateModels(history, method.surrogate, method.feasibility_weighting, seed)
+        self._separate = SeparateModels(
+            history,
+            method.surrogate,
+            method.feasibility_weighting,
+            seed,
+            knows_modes=self._has_promises()
+            and len(history.objectives) > 1
+            and (method.prior_weighting is None or method.prior_weighting.is_factor),
+        )
         self._guide = Guide(beliefs or (Belief(prior=prior),), method.prior_weighting, history.space, seed)
 
     @property
@@ -94,15 +103,29 @@ class BayesianOptimizer(Optimizer):
         """The models by all that is known; of evaluations that are told apart as failures as of infeasible ones."""
         return self._separate.after()
 
+    @property
+    def _known(self) -> Knowledge:
+        """What is known of the objectives."""
+        modes = self._separate.modes()
+        return self._models.posterior() if modes is None else modes.known()
+
+    @property
+    def _observed(self) -> FloatArray:
+        """The objectives of all evaluations that completed in the history of the `_models`, as that is told them."""
+        return self._models.told() if self._separate.modes() is None else self.history.Y()
+
     def posterior(self) -> Posterior:
         """Return what the surrogate knows after the completed evaluations, of which there must be one.
 
-        Of successes, if failures are told apart, and of objectives whose tails are compressed; see `predictor`.
+        Of successes, if failures are told apart, and of objectives whose tails are compressed; see `predictor`. One
+        model of all evaluations, also where two kinds of them are told apart.
         """
         return self.fitted()[0]
 
     def predictor(self) -> Predictor:
         """Return what predicts the objectives as they are reported, where an evaluation succeeds."""
+        if (modes := self._separate.modes()) is not None:
+            return modes.known()
         return AsReported(posterior=self.posterior(), tails=self._models.tails())
 
     def predictor_of_all(self) -> Predictor:
@@ -111,10 +134,10 @@ class BayesianOptimizer(Optimizer):
 
     def set_aside(self) -> set[int]:
         """Return the trials that fail or would likely do so if repeated, and those with an outlier."""
-        seen, outliers = self._models.history.completed, self.posterior().outliers()
-        rows = () if outliers is None else np.flatnonzero(outliers.any(axis=1))
+        if (modes := self._separate.modes()) is not None:
+            return modes.outliers()
         fail = np.flatnonzero(self._separate.fail_likely())
-        return {seen[row].trial for row in rows} | {self.history.completed[row].trial for row in fail}
+        return outliers_of(self._models) | {self.history.completed[row].trial for row in fail}
 
     def has_model(self, n: int | None = None) -> bool:
         """Tell whether the first n rows, all by default, are enough for a model: in what the surrogate is fitted to."""
@@ -215,7 +238,7 @@ class BayesianOptimizer(Optimizer):
         if draws_at_end(self._suggestions()) >= self._method.escapes:
             return False
         models = self._models
-        if self._has_promises() and is_in_the_dark(models.history, models.told(), context.posterior):
+        if self._has_promises() and is_in_the_dark(models.history, self._observed, self._known):
             return True
         return stands_still(models.history) and (len(self.history.objectives) == 1 or promise < NEXT_TO_NOTHING)
 
@@ -238,7 +261,7 @@ class BayesianOptimizer(Optimizer):
         has_weights = self._method.acquisition.is_scalarizing and len(self.history.objectives) > 1
         n_draws = 1 + self._method.weights.redraws * has_weights
         best: tuple[float, Suggestion] | None = None
-        mean = context.posterior.predict(context.X).mean
+        mean = self._known.predict(context.X).mean
         for k in range(n_draws):
             if k:
                 context = replace(context, weights=self._weights(context.normalization, rng))
@@ -262,14 +285,17 @@ class BayesianOptimizer(Optimizer):
         feasibility: FeasibilityPosterior | None,
         guidance: Guidance,
     ) -> float:
-        """Return what the acquisition function alone, without prior and feasibility, thinks of a suggestion."""
+        """Return what the acquisition function alone, without prior and feasibility, thinks of a suggestion.
+
+        Where there are two kinds of evaluations, the chances of both are part of it.
+        """
         by_feasibility = self._method.feasibility_weighting
         if not self._method.acquisition.is_logarithmic or suggestion.acquisition_value is None:
             return math.inf
         x = self.history.space.encode([suggestion.configuration])
         if guidance.weight:
             return float(self._method.acquisition.scorer(context)(x)[0])
-        if feasibility is None or by_feasibility is None:
+        if feasibility is None or by_feasibility is None or self._separate.modes() is not None:
             return suggestion.acquisition_value
         return suggestion.acquisition_value - by_feasibility.exponent * float(feasibility.log_probability(x)[0])
 
@@ -283,13 +309,18 @@ class BayesianOptimizer(Optimizer):
     ) -> Scorer:
         """Return the acquisition function, with the prior and the probability of being feasible where they count."""
         acquisition, weighting = self._method.acquisition, self._method.prior_weighting
+        by_feasibility = self._method.feasibility_weighting
+        if (modes := self._separate.modes()) is not None and by_feasibility is not None:
+            scorer = modes.scorer(acquisition, context, by_feasibility.exponent)
+            if weighting is None or not guidance.weight:
+                return scorer
+            return weighting.weigh(scorer, guidance.belief.prior, guidance.weight)
         if feasibility is not None and not acquisition.is_logarithmic:
             acquisition = Improving(acquisition)
         if weighting is None or not guidance.weight:
             scorer = acquisition.scorer(context)
         else:
             scorer = weighting.scorer(acquisition, context, guidance.belief.prior, guidance.weight)
-        by_feasibility = self._method.feasibility_weighting
         return scorer if feasibility is None or by_feasibility is None else by_feasibility.weigh(scorer, feasibility)
 
     def _less_on_bounds(self, scorer: Scorer, context: AcquisitionContext) -> Scorer:
@@ -298,8 +329,8 @@ class BayesianOptimizer(Optimizer):
         if least >= 1 or not self._has_promises() or axes.sum() < FEWEST_CHECKED:
             return scorer
         models = self._models
-        mean = context.posterior.predict(models.history.X()).mean
-        factor = boundary_factor(models.history, models.told(), mean, least)
+        mean = self._known.predict(models.history.X()).mean
+        factor = boundary_factor(models.history, self._observed, mean, least, self._separate.modes_since())
         return scorer if factor == 1 else BoundaryWeighted(inner=scorer, axes=axes, factor=factor)
 
     def _by_score(
@@ -335,18 +366,19 @@ class BayesianOptimizer(Optimizer):
         return guidance.said_of(suggestion)
 
     def _context(self, rng: Rng, feasibility: FeasibilityPosterior | None) -> AcquisitionContext:
-        X, Y = self._models.observed()
+        modes = self._separate.modes()
+        X, Y = self._models.observed() if modes is None else (self.history.X(), self.history.Y())
         reference_point = reference_point_of(self.history.objectives)
         normalization = Normalization.of_front(Y, reference_point)
-        posterior = self._models.posterior()
+        known = self._known
         if feasibility is not None:
             normalization = normalization.reaching(
-                optimistic_ideal(posterior, feasibility, spread_points(self.history.space, rng))
+                optimistic_ideal(known, feasibility, spread_points(self.history.space, rng))
             )
         if reference_point is None and Y.shape[1] > 1 and not self._method.acquisition.is_scalarizing:
-            reference_point = foreseen_reference_point(posterior, feasibility, self._models.history, rng)
+            reference_point = foreseen_reference_point(known, feasibility, self._models.history, rng)
         return AcquisitionContext(
-            posterior=posterior,
+            posterior=self._models.posterior() if modes is None else modes.low.posterior(),
             X=X,
             Y=Y,
             X_pending=self._pending_points(),

@@ -35,7 +35,7 @@ ENOUGH: Final = 1 / 2
 """Where a larger share is kept, it is one. So it is before the first promise, and no longer after one broken."""
 
 
-def boundary_factor(history: History, observed: FloatArray, mean: FloatArray, least: float) -> float:
+def boundary_factor(history: History, observed: FloatArray, mean: FloatArray, least: float, n_before: int = 0) -> float:
     """Return the factor of what a point on a bound promises, between `least` and one.
 
     Parameters
@@ -46,13 +46,14 @@ def boundary_factor(history: History, observed: FloatArray, mean: FloatArray, le
         The objectives of those that completed, as the model of now is told them and by that model, shape (n, m).
     least
         Factor where next to no promise is kept, in (0, 1].
+    n_before
+        Evaluations that completed before the promises that count: earlier ones are of models of another kind.
     """
     if least >= 1 or len(mean) < MIN_COMPLETED:
         return 1.0
     is_near = nearness(history.X_all(), history.space.is_continuous).max(axis=1) >= NEAR
-    kept = are_kept(
-        [promise for promise in promises_of(history) if is_near[promise.row]], history.objectives, observed, mean
-    )
+    made = [promise for promise in promises_of(history) if is_near[promise.row] and promise.n_before >= n_before]
+    kept = are_kept(made, history.objectives, observed, mean)
     share = (sum(kept) + 0.5) / (len(kept) + 1)
     doubt = min(max((ENOUGH - share) / (ENOUGH - FEW), 0.0), 1.0)
     return float(least**doubt)

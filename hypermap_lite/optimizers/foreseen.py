@@ -13,7 +13,7 @@ from hypermap_lite.pareto.dominance import non_dominated
 from hypermap_lite.pareto.hypervolume import infer_reference_point
 from hypermap_lite.quasi_random import sobol_points
 from hypermap_lite.space.search_space import SearchSpace
-from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.surrogates.base import Predictor
 from hypermap_lite.surrogates.feasibility import FeasibilityPosterior
 from hypermap_lite.typing import FloatArray, Rng
 
@@ -33,7 +33,7 @@ def spread_points(space: SearchSpace, rng: Rng) -> FloatArray:
 
 
 def foreseen_reference_point(
-    posterior: Posterior, feasibility: FeasibilityPosterior | None, history: History, rng: Rng
+    posterior: Predictor, feasibility: FeasibilityPosterior | None, history: History, rng: Rng
 ) -> FloatArray:
     """Return the reference point of the front that the model foresees, shape (m,).
 

@@ -64,6 +64,8 @@ class Models:
         Of the scenario.
     failures
         Which infeasible evaluations of the history are failures in fact, if there are any.
+    has_tails
+        Whether tails may be compressed.
     announced
         What the log has said already; it is added to.
     """
@@ -75,6 +77,7 @@ class Models:
         feasibility_weighting: FeasibilityWeighting | None,
         seed: int,
         failures: ToldApart | None = None,
+        has_tails: bool = True,
         announced: set[object] | None = None,
     ) -> None:
         self._history = history
@@ -82,8 +85,11 @@ class Models:
         self._feasibility_weighting = feasibility_weighting
         self._seed = seed
         self._failures = failures
+        self._has_tails = has_tails
         self._warm_starts: dict[int, Any] = {}
         self._tails: dict[int, Tails] = {}
+        self.is_silent = False
+        """Whether the log is not told what these models make of the evaluations."""
         self._announced = set() if announced is None else announced
         self._posterior_of: tuple[tuple[int, ...], Posterior] | None = None
         self._feasibility_of: tuple[int, FeasibilityPosterior] | None = None
@@ -148,7 +154,7 @@ class Models:
     def _tails_after(self, k: int) -> Tails:
         """Return the tails by the first k evaluations, or distinct configurations."""
         objectives = self._history.objectives
-        if not k:
+        if not k or not self._has_tails:
             return (None,) * len(objectives)
         if self._surrogate.noise_from_replicates:
             X, Y = self._reported(self._history.ends_of_samples()[k - 1])
@@ -165,7 +171,7 @@ class Models:
     def _announce(self, tails: Tails, k: int) -> None:
         """Log, once per objective, that it has a tail."""
         for objective, tail in zip(self._history.objectives, tails, strict=True):
-            if tail is not None and objective.name not in self._announced:
+            if tail is not None and objective.name not in self._announced and not self.is_silent:
                 self._announced.add(objective.name)
                 logger.info(
                     "after %d completed evaluations: values of %s %s %.4g are far beyond the rest; the model learns"
@@ -192,7 +198,7 @@ class Models:
     def _announce_doubts(self, posterior: Posterior) -> None:
         """Log, once per objective, that a model without noise takes the place of one with noise."""
         for objective, is_doubted in zip(self._history.objectives, posterior.lacks_noise, strict=True):
-            if is_doubted and ("noise", objective.name) not in self._announced:
+            if is_doubted and ("noise", objective.name) not in self._announced and not self.is_silent:
                 self._announced.add(("noise", objective.name))
                 logger.info(
                     "after %d completed evaluations: %s is more likely rough than noisy; the model goes without noise"
@@ -203,7 +209,7 @@ class Models:
 
     def _announce_outliers(self, posterior: Posterior) -> None:
         """Log, once per evaluation and objective, that it is set aside."""
-        outliers = posterior.outliers()
+        outliers = None if self.is_silent else posterior.outliers()
         for row, k in () if outliers is None else np.argwhere(outliers):
             evaluation, objective = self._history.completed[row], self._history.objectives[k]
             if (evaluation.trial, objective.name) not in self._announced:

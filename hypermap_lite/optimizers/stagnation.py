@@ -11,7 +11,7 @@ import numpy as np
 from hypermap_lite.evaluation.outcome import CONFIRM, MODEL, RANDOM, Suggestion
 from hypermap_lite.history.history import History
 from hypermap_lite.optimizers.promises import are_kept, promises_of
-from hypermap_lite.surrogates.base import Posterior
+from hypermap_lite.surrogates.base import Knowledge
 from hypermap_lite.typing import FloatArray
 
 PATIENCE: Final = 4
@@ -49,7 +49,7 @@ def stands_still(history: History) -> bool:
     return len(added) == PATIENCE and not any(added)
 
 
-def is_in_the_dark(history: History, observed: FloatArray, posterior: Posterior) -> bool:
+def is_in_the_dark(history: History, observed: FloatArray, posterior: Knowledge) -> bool:
     """Tell whether there is an objective of which the model knows no more than the mean, and its promises are broken.
 
     So it is on a plateau with noise: what is learnt of it is that the noise is large and that something may be

@@ -31,6 +31,7 @@ def paper(*, has_priors: bool) -> Mapping[str, Any]:
             "compress_tails": False,
             "ignore_outliers": False,
             "separate_failures": False,
+            "separate_modes": False,
         },
         "maximizer": {"type": "multistart_gradient", "smooth_levels": 0, "joint_tolerance": 0.0},
         "acquisition": {

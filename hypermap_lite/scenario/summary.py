@@ -34,7 +34,10 @@ CARE = ("prior_free", "safeguard", "make_up")
 UNSAID_IF_OFF = ("ends", "noise_from_replicates", "redraws", "unbounded", "uniform_share")
 """Options that are shown only where they do something."""
 
-SAID_IN_WORDS = ("compress_tails", "doubt_noise", "ignore_outliers", "learn_infeasible", "separate_failures")
+SAID_IN_WORDS = (
+    *("compress_tails", "doubt_noise", "ignore_outliers", "learn_infeasible"),
+    *("separate_failures", "separate_modes"),
+)
 """Options that have a sentence of their own."""
 
 
@@ -192,6 +195,8 @@ def _method(scenario: Scenario) -> list[str]:
         lines.append("an evaluation far worse than the others foretell is set aside until one near it is as bad")
     if _separates_failures(scenario):
         lines.append("evaluations in a bad mode of their own, such as failures, are told apart from the others")
+    if _separates_modes(scenario):
+        lines.append("so are two kinds of which the front needs both; each then has a model of its own")
     return [*lines, _prior_use(scenario)]
 
 
@@ -207,6 +212,19 @@ def _separates_failures(scenario: Scenario) -> bool:
         options.get("separate_failures")
         and not options.get("noise_from_replicates")
         and scenario.acquisition.feasibility_weighting is not None
+    )
+
+
+def _separates_modes(scenario: Scenario) -> bool:
+    """Tell whether two kinds of evaluations that the front needs have models of their own."""
+    is_one_front = scenario.acquisition.function.type == HYPERVOLUME_IMPROVEMENT
+    weighting = scenario.acquisition.prior_weighting
+    return bool(
+        _separates_failures(scenario)
+        and scenario.surrogate.options.get("separate_modes")
+        and is_one_front
+        and (weighting is None or weighting.type != "bopro")
+        and 1 < len(scenario.objectives) <= MAX_CLOSED_FORM
     )
 
 

@@ -91,7 +91,15 @@ class Predictor(Protocol):
         ...
 
 
-class Posterior(Predictor, Protocol):
+class Knowledge(Predictor, Protocol):
+    """What predicts, and tells how much it knows."""
+
+    def explained(self) -> FloatArray | None:
+        """Return how much of each objective it foretells; see `Posterior.explained`."""
+        ...
+
+
+class Posterior(Knowledge, Protocol):
     """What is known of m objectives after n evaluations. Immutable."""
 
     @property
@@ -193,6 +201,7 @@ class Surrogate(Protocol):
         *,
         is_ordered: BoolArray,
         permutations: Permutations = NO_PERMUTATIONS,
+        or_needed: bool = False,
     ) -> Failures | None:
         """Return which evaluations are so much of a kind of their own that `fit` wants the others alone; None for none.
 
@@ -203,6 +212,8 @@ class Surrogate(Protocol):
         corner
             Reference point of the hypervolume, shape (m,), of which failures have next to nothing; None with one
             objective.
+        or_needed
+            Whether they may also be such that the front needs them.
         """
         ...
 

@@ -10,13 +10,15 @@ It is done on evidence. Let z tell which of n evaluations fail. Then all that is
 .. math:: p(z) \, p(y_{success}) \, p(y_{failure})
 
 with a process for each part, in place of one for all values. Where success has no reason in the parameters nothing is
-told apart, and neither is what the front can't do without, such as the slow and gentle half of it.
+told apart. What the front can't do without, such as its slow and gentle half, is no failure; if asked for, two such
+modes are told apart on the same evidence, and both are looked for, as in a mixture of two experts [3]_.
 
 References
 ----------
 .. [1] Cragg. Some Statistical Models for Limited Dependent Variables with Application to the Demand for Durable Goods.
    Econometrica, 1971.
 .. [2] Gramacy, Lee. Optimization under Unknown Constraints. Bayesian Statistics 9, 2011.
+.. [3] Jacobs, Jordan, Nowlan, Hinton. Adaptive Mixtures of Local Experts. Neural Computation, 1991.
 """
 
 from __future__ import annotations
@@ -108,7 +110,13 @@ class Densities:
 
 
 def likely_failures(
-    X: FloatArray, Y: FloatArray, least: Sequence[float], corner: FloatArray | None, log_density: Densities
+    X: FloatArray,
+    Y: FloatArray,
+    least: Sequence[float],
+    corner: FloatArray | None,
+    log_density: Densities,
+    *,
+    or_needed: bool = False,
 ) -> Failures | None:
     """Return the failures that make all outputs much likelier; None if there are none of the kind.
 
@@ -124,12 +132,16 @@ def likely_failures(
         Reference point of the hypervolume, shape (m,); None with one objective.
     log_density
         By which it is judged.
+    or_needed
+        Whether they may be such that the front needs them.
     """
     if len(Y) < FEWEST:
         return None
     best, most = None, MARGIN * max(len(Y), FEW)
     together: list[float] = []
-    for failures in candidates(Y, corner):
+    for failures in sorted(candidates(Y, corner, or_needed=or_needed), key=lambda failures: failures.are_needed):
+        if failures.are_needed and best is not None and not best.are_needed:
+            break  # real failures first
         together = together or [log_density(X, y) for y in Y.T]
         gain = _gain(X, Y, failures, together, log_density)
         if gain < most or together[failures.objective] <= -REJECTED:

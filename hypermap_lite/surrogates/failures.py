@@ -1,10 +1,10 @@
-"""Evaluations whose objective is in a bad mode of its own, and which these may be."""
+"""Evaluations whose objective is in a mode of its own, and which these may be."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -39,16 +39,19 @@ class Failures:
     """Its position."""
 
     limit: float
+    are_needed: bool = False
+    """Whether the front needs them and the others, so that they are no failures but outcomes of another kind."""
 
     def among(self, Y: FloatArray) -> BoolArray:
         """Tell which of n evaluations, shape (n, m), fail, shape (n,)."""
         return np.asarray(Y[:, self.objective] > self.limit)
 
 
-def candidates(Y: FloatArray, corner: FloatArray | None) -> Iterator[Failures]:
+def candidates(Y: FloatArray, corner: FloatArray | None, *, or_needed: bool = False) -> Iterator[Failures]:
     """Yield for each objective the failures that make its values most like two normal modes, if one is less likely.
 
-    Without those that the front would miss, and where all successes are worth the same and nothing is left to improve.
+    Without those where all successes are worth the same and nothing is left to improve, and those that the front would
+    miss; if such are asked for, too, with those of which the front needs both kinds.
     """
     for k, y in enumerate(Y.T):
         limit = _between_modes(np.sort(y))
@@ -57,22 +60,31 @@ def candidates(Y: FloatArray, corner: FloatArray | None) -> Iterator[Failures]:
         failures = Failures(objective=k, limit=limit)
         fails = failures.among(Y)
         if corner is None:
-            is_needless = bool(np.ptp(y[~fails]) > 0)
-        else:
-            close = np.minimum(corner, infer_reference_point(Y))
-            is_needless = _lost(Y, fails, corner) <= LOST and _lost(Y, fails, close) <= LOST_CLOSE
-        if is_needless:
-            yield failures
+            if np.ptp(y[~fails]) > 0:
+                yield failures
+            continue
+        close = np.minimum(corner, infer_reference_point(Y))
+        if _volume(Y, corner) == 0 or _volume(Y, close) == 0:
+            continue
+        are_needed, others_are_needed = (
+            _lost(Y, kind, corner) > LOST or _lost(Y, kind, close) > LOST_CLOSE for kind in (fails, ~fails)
+        )
+        if not are_needed or (or_needed and others_are_needed):
+            yield replace(failures, are_needed=are_needed)
 
 
-def _lost(Y: FloatArray, fails: BoolArray, corner: FloatArray) -> float:
-    """Return which share of the hypervolume of outputs, shape (n, m), is lost without those that fail; 1 of nothing."""
+def _lost(Y: FloatArray, kind: BoolArray, corner: FloatArray) -> float:
+    """Return which share of the hypervolume of outputs, shape (n, m), is lost without those of a kind."""
+    return 1.0 - _volume(Y, corner, kind) / _volume(Y, corner)
+
+
+def _volume(Y: FloatArray, corner: FloatArray, without: BoolArray | None = None) -> float:
+    """Return the hypervolume of outputs, shape (n, m), as a share of the box from their best values to a corner."""
     best = Y.min(axis=0)
     if not (best < corner).all():
-        return 1.0
+        return 0.0
     box = (Y - best) / (corner - best)  # so that no units are too large or too small
-    whole = hypervolume(box, np.ones(len(corner)))
-    return 1.0 - hypervolume(box[~fails], np.ones(len(corner))) / whole if whole > 0 else 1.0
+    return hypervolume(box if without is None else box[~without], np.ones(len(corner)))
 
 
 def _between_modes(y: FloatArray) -> float | None:

@@ -93,6 +93,10 @@ class GaussianProcess:
     separate_failures: bool = True
     """Whether evaluations in a bad mode of their own are told apart where that makes all of them much likelier."""
 
+    separate_modes: bool = True
+    """Whether that is done, too, where the front needs both kinds, if several objectives have an acquisition function
+    that knows what to do with two."""
+
     doubt_noise: bool = False
     """Whether a model without noise takes the place of one with noise where it is likelier."""
 
@@ -147,6 +151,7 @@ class GaussianProcess:
         *,
         is_ordered: BoolArray,
         permutations: Permutations = NO_PERMUTATIONS,
+        or_needed: bool = False,
     ) -> Failures | None:
         """Compare processes of each objective's successes and failures with one of both; see `Surrogate.failures`."""
         if not self.separate_failures or self.noise_from_replicates:
@@ -158,7 +163,8 @@ class GaussianProcess:
             compress_tails=self.compress_tails,
             ignore_outliers=self._has_outliers,
         )
-        return likely_failures(X, Y, least.tolist(), corner, log_density)
+        or_needed = or_needed and self.separate_modes
+        return likely_failures(X, Y, least.tolist(), corner, log_density, or_needed=or_needed)
 
     @property
     def _has_outliers(self) -> bool:

@@ -99,6 +99,7 @@ class RandomForest:
         *,
         is_ordered: BoolArray,
         permutations: Permutations = NO_PERMUTATIONS,
+        or_needed: bool = False,
     ) -> Failures | None:
         """Return none: trees split where values have a cliff, and each side has leaves of its own."""
         return None

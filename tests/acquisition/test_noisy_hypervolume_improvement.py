@@ -58,6 +58,21 @@ def test_known_values_have_one_front_and_uncertain_ones_many() -> None:
     assert len(drawn.boxes) == 16
 
 
+@pytest.mark.parametrize("noise", [False, True])
+def test_what_is_beside_the_evaluations_is_on_the_front(noise: bool) -> None:
+    """Half of the evaluations are told as values alone, to a model that knows all of them."""
+    base = context(objectives(X), noise=noise, reference_point=np.ones(2))
+    Z = np.random.default_rng(4).random((30, 2))
+    function = NoisyExpectedHypervolumeImprovement()
+    whole = function.scorer(base)(Z)
+    half = function.scorer(replace(base, X=X[:10], Y=base.Y[:10]))(Z)
+    told = function.scorer(replace(base, X=X[:10], Y=base.Y[:10], beside=base.posterior.predict(X[10:]).mean))(Z)
+    likely = whole > whole.max() - 5
+    assert told[likely] == pytest.approx(whole[likely], abs=0.1)
+    if not noise:  # its draws are of all points that it knows
+        assert (half[likely] > whole[likely] + 0.1).any()
+
+
 def test_drawn_fronts_agree_with_the_known_one() -> None:
     base = context(objectives(X))
     Z = np.random.default_rng(4).random((30, 2))

@@ -253,6 +253,26 @@ def test_front_of_the_plateau_gives_the_hypervolume_in_closed_form():
     assert share("plateau", points("plateau", 100_000)) < 1
 
 
+def test_front_of_a_grasp_that_may_give_up_gives_the_hypervolume_in_closed_form():
+    X = np.tile([0.62, 0.35, 0.55, 0.25, 0, 0], (4001, 1))
+    X[:, 4] = np.linspace(0, 1, 4001)
+    X[:, 5] = 0.3 + 0.4 * (1 - X[:, 4])
+    X[-1] = 0
+    assert share("giving_up", X) == pytest.approx(1, abs=1e-3)
+    assert share("giving_up", points("giving_up", 100_000)) < 1
+    loss = PROBLEMS["giving_up"].function(points("giving_up", 20_000))[:, 0]
+    assert (loss < 0).mean() == pytest.approx(4 / 3 * np.pi * 0.3**3 * 0.75, abs=0.01)
+
+
+def test_front_of_two_gaits_gives_the_hypervolume_in_closed_form():
+    fast, slow = np.full((2, 2000, 6), 0.45)
+    fast[:, :3] = np.column_stack([np.linspace(0, 1, 2000), np.ones(2000), np.full(2000, 0.3)])
+    slow[:, :3] = np.column_stack([np.zeros(2000), np.linspace(0, 1, 2000), np.full(2000, 0.6)])
+    assert share("gaits", np.vstack([fast, slow])) == pytest.approx(1, abs=1e-3)
+    assert share("gaits", fast) < 0.7
+    assert share("gaits", points("gaits", 100_000)) < 1
+
+
 def test_most_of_the_plateau_is_failure_of_equal_duration():
     durations = PROBLEMS["plateau"].function(points("plateau", 20_000))[:, 0]
     assert np.mean(durations == 1.5) == pytest.approx(1 - math.pi * 0.15**2 * 0.7, abs=0.01)

@@ -225,3 +225,12 @@ def test_two_axes_are_left_alone() -> None:
         return run(scenario, 22, function=lambda c: rough({**dict.fromkeys("cdef", 0.5), **c})).history.X()
 
     assert np.array_equal(outcome(1.0), outcome(0.01))
+
+
+def test_promises_of_earlier_models_do_not_count() -> None:
+    rows = [START, ("design", 0.4, (1.1, 0.9), {}), (MODEL, 0.0, LOSS, {}), (MODEL, 0.0, GAIN, {})]
+    known = history(*rows[:3])
+    assert boundary_factor(known, known.Y(), known.Y(), 0.3, n_before=2) == pytest.approx(0.3)
+    assert boundary_factor(known, known.Y(), known.Y(), 0.3, n_before=3) == 1.0
+    known = history(*rows, (MODEL, 0.0, LOSS, {}))
+    assert boundary_factor(known, known.Y(), known.Y(), 0.3, n_before=4) == pytest.approx(0.3)

@@ -265,4 +265,4 @@ def test_the_log_says_when_nothing_is_told_apart_any_more(
         optimizer.set_aside()
     lines = [r.message for r in caplog.records if "kind of their own" in r.message or "told apart" in r.message]
     assert len(lines) == 2
-    assert lines[1] == "after 24 completed evaluations: none is told apart as a failure any more"
+    assert lines[1] == "after 24 completed evaluations: no evaluations are told apart any more"

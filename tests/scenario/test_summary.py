@@ -134,6 +134,17 @@ def test_separate_failures_have_a_line() -> None:
     assert line not in page(preset="paper")
 
 
+def test_separate_modes_have_a_line() -> None:
+    line = "so are two kinds of which the front needs both; each then has a model of its own"
+    assert line in page()
+    for surrogate in ({"separate_failures": False}, {"separate_modes": False}, "random_forest"):
+        assert line not in page(surrogate=surrogate)
+    assert line not in page(objectives=[{"name": "f1"}])
+    assert line not in page(objectives=[{"name": f"f{k}"} for k in range(4)])
+    assert line not in page(acquisition="expected_improvement")
+    assert line not in page(preset="paper")
+
+
 def test_a_search_without_a_model_names_no_acquisition() -> None:
     text = page(optimizer="random_search")
     assert "evaluations 9 to 50: random_search" in text

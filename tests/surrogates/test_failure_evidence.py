@@ -21,12 +21,25 @@ FAILED = 2.5
 SKILL = np.where(SUCCEEDS, DURATION, FAILED)
 
 
-def told_apart(Y: np.ndarray, points: np.ndarray = X, corner: Any = None, **options: Any) -> Failures | None:
+def told_apart(
+    Y: np.ndarray, points: np.ndarray = X, corner: Any = None, *, or_needed: bool = False, **options: Any
+) -> Failures | None:
     Y = Y.reshape(len(points), -1)
     least = np.full(Y.shape[1], -np.inf)
     return GaussianProcess(**options).failures(
-        points, Y, least, corner, is_ordered=np.ones(points.shape[1], dtype=bool)
+        points, Y, least, corner, is_ordered=np.ones(points.shape[1], dtype=bool), or_needed=or_needed
     )
+
+
+def test_what_the_front_needs_is_told_apart_if_asked_for() -> None:
+    """Where the skill gives up it takes less effort."""
+    Y, corner = np.column_stack([SKILL, np.where(SUCCEEDS, 2 - DURATION / 2, 0.1 + 0.1 * X[:, 1])]), np.full(2, 3.0)
+    assert told_apart(Y, corner=corner) is None
+    assert told_apart(Y, corner=corner, or_needed=True, separate_modes=False) is None
+    found = told_apart(Y, corner=corner, or_needed=True)
+    assert found is not None
+    assert found.are_needed
+    assert np.array_equal(found.among(Y), ~SUCCEEDS if found.objective == 0 else SUCCEEDS)
 
 
 @pytest.mark.parametrize("factor", [1e-6, 1.0, 1e6])

@@ -48,6 +48,30 @@ def test_what_the_front_needs_is_no_failure() -> None:
         assert [(f.objective, round(f.limit, 9)) for f in found] == [(f.objective, f.limit) for f in expected]
 
 
+def test_it_is_of_another_kind_for_those_who_ask() -> None:
+    corner = np.array([7.0, 3.0])
+    for effort, are_needed in ((0.0, True), (5.0, False)):
+        Y = np.column_stack([MODES, np.r_[np.linspace(2, 1, 6), np.full(8, effort)]])
+        found = [failures for failures in candidates(Y, corner, or_needed=True) if failures.objective == 0]
+        assert [failures.are_needed for failures in found] == [are_needed]
+        assert np.array_equal(found[0].among(Y), MODES == 6)
+
+
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+def test_what_only_costs_less_where_it_fails_is_a_failure(order: list[int]) -> None:
+    """Beyond the reference point the front needs nothing, so the successes are not one of two kinds by their effort."""
+    corner = np.array([5.0, 4.0])[order]
+    Y = np.column_stack([MODES, np.r_[np.linspace(2, 1, 6), np.linspace(0.2, 0.4, 8)]])[:, order]
+    (found,) = candidates(Y, corner, or_needed=True)
+    assert not found.are_needed
+    assert np.array_equal(found.among(Y), MODES == 6)
+
+
+def test_with_one_objective_none_is_needed() -> None:
+    assert not any(failures.are_needed for failures in candidates(MODES[:, None], None, or_needed=True))
+
+
 def test_without_hypervolume_nothing_is_known_to_be_needless() -> None:
     Y = np.column_stack([MODES, np.r_[np.linspace(2, 1, 6), np.full(8, 5.0)]])
-    assert not [*candidates(Y, np.array([1.0, 0.5]))]
+    for or_needed in (False, True):
+        assert not [*candidates(Y, np.array([1.0, 0.5]), or_needed=or_needed)]
