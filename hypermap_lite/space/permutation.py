@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations
 from typing import ClassVar, Final
 
@@ -116,14 +117,7 @@ class PermutationParameter(Parameter):
     def neighbours(self, code: float) -> FloatArray:
         """Return the codes of all permutations one swap of two elements, or one move of one, away, shape (k,)."""
         order = self.orders(np.array([code]))[0]
-        swapped, moved = [], []
-        for i, j in combinations(range(self.size), 2):
-            other = order.copy()
-            other[[i, j]] = order[[j, i]]
-            swapped.append(other)
-            for start, end in ((i, j), (j, i)):
-                moved.append(np.insert(np.delete(order, start), end, order[start]))
-        return self.codes_of_levels(np.unique(ranks_of(np.array([*swapped, *moved]))))
+        return self.codes_of_levels(np.unique(ranks_of(order[_exchanges(self.size)])))
 
     def swap(self, codes: FloatArray, n_swaps: IntArray, rng: Rng) -> FloatArray:
         """Return the codes of n permutations after so many random swaps of two places each, shape (n,)."""
@@ -134,6 +128,22 @@ class PermutationParameter(Parameter):
             j = (i + rng.integers(1, self.size, size=len(rows))) % self.size
             orders[rows, i], orders[rows, j] = orders[rows, j], orders[rows, i]
         return self.codes_of_levels(ranks_of(orders))
+
+
+@cache
+def _exchanges(size: int) -> IntArray:
+    """Return the places, in an order, of what stands where after one swap of two elements or move of one, (k, size)."""
+    places = np.arange(size)
+    swapped, moved = [], []
+    for i, j in combinations(range(size), 2):
+        other = places.copy()
+        other[[i, j]] = places[[j, i]]
+        swapped.append(other)
+        for start, end in ((i, j), (j, i)):
+            moved.append(np.insert(np.delete(places, start), end, start))
+    exchanges = np.unique(np.array([*swapped, *moved]), axis=0)
+    exchanges.setflags(write=False)  # all who ask share it
+    return exchanges
 
 
 def orders_of(ranks: IntArray, size: int) -> IntArray:

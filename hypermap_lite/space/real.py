@@ -33,6 +33,14 @@ TIE = 8 * sys.float_info.epsilon
 """Error of a number of steps on the decimal grid, as a share of it."""
 
 
+EXACT_POWERS = np.array([float(10**k) for k in range(23)])
+"""The powers of ten that a float holds without rounding."""
+
+
+LARGEST_EXACT = 2.0**53
+"""The largest number up to which a float holds every whole one."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealParameter(Parameter):
     """All real numbers from `low` to `high`."""
@@ -72,30 +80,40 @@ class RealParameter(Parameter):
 
     def decode(self, codes: FloatArray) -> list[Value]:
         """Return the native values of n codes, rounded to a decimal grid far finer than any use."""
-        return [self._round(self._start + float(u) * self._span) for u in codes]
-
-    def _round(self, position: float) -> float:
-        value = 10.0**position if self.log else position
-        magnitude = abs(value) if self.log else self._span
-        digits = SIGNIFICANT_DIGITS - math.ceil(math.log10(magnitude))
-        return min(max(round(value, digits), self.low), self.high) + 0.0  # no negative zero
+        return np.clip(self._on_grid(codes), self.low, self.high).tolist()
 
     def rounded(self, codes: FloatArray) -> FloatArray:
         """Return the codes of what n codes decode to, shape (n,): one for all that are the same configuration.
 
-        As `decode` and `encode`, but fast, without the last decimals' rounding, and beyond the ends by as much.
+        As `decode` and `encode`, but without the last decimals' rounding, and beyond the ends by as much.
         """
-        position = self._start + codes * self._span
-        values = 10.0**position if self.log else position
-        magnitude = np.abs(values) if self.log else self._span
-        grid = 10.0 ** (SIGNIFICANT_DIGITS - np.ceil(np.log10(magnitude)))
-        steps = values * grid
-        whole = np.rint(steps)
-        values = whole / grid
-        is_tie = np.abs(np.abs(steps - whole) - 0.5) <= TIE * np.abs(steps)
-        if is_tie.any():  # as near to a half as a float can tell
-            values[is_tie] = self.decode(codes[is_tie])
+        values = self._on_grid(codes)
         return np.asarray(((np.log10(values) if self.log else values) - self._start) / self._span)
+
+    def _on_grid(self, codes: FloatArray) -> FloatArray:
+        """Return n native values as `_rounded` rounds them one by one, shape (n,)."""
+        positions = self._start + np.asarray(codes, dtype=float) * self._span
+        values = 10.0**positions if self.log else positions
+        digits = (
+            SIGNIFICANT_DIGITS - np.ceil(np.log10(np.abs(values))).astype(int)
+            if self.log
+            else np.array(SIGNIFICANT_DIGITS - math.ceil(math.log10(self._span)))
+        )
+        size = np.minimum(np.abs(digits), len(EXACT_POWERS) - 1)
+        up, down = EXACT_POWERS[np.where(digits > 0, size, 0)], EXACT_POWERS[np.where(digits < 0, size, 0)]
+        steps = values * up / down
+        whole = np.rint(steps)
+        # A whole number and a power of ten that are exact have the quotient or product that is nearest to the decimal.
+        result = whole / up * down
+        is_tie = np.abs(np.abs(steps - whole) - 0.5) <= TIE * np.abs(steps)  # as near to a half as a float can tell
+        hard = is_tie | (np.abs(digits) >= len(EXACT_POWERS)) | (np.abs(whole) > LARGEST_EXACT)
+        result[hard] = [self._rounded(float(p)) for p in positions[hard]]
+        return np.asarray(result + 0.0)  # no negative zeros
+
+    def _rounded(self, position: float) -> float:
+        value = 10.0**position if self.log else position
+        magnitude = abs(value) if self.log else self._span
+        return round(value, SIGNIFICANT_DIGITS - math.ceil(math.log10(magnitude)))
 
     def codes_of_levels(self, levels: IntArray) -> FloatArray:
         """Raise: a real parameter has no levels."""

@@ -1,5 +1,7 @@
 """What holds for every type of parameter."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -33,6 +35,35 @@ def test_codes_of_values_stay_in_the_unit_interval_and_close_to_where_they_came_
 def test_snapped_codes_are_those_of_the_decoded_values(parameter: Parameter, u: np.ndarray) -> None:
     if parameter.n_levels is not None:
         assert np.array_equal(parameter.snap(u), parameter.encode(parameter.decode(u)))
+
+
+def one_by_one(parameter: RealParameter, codes: np.ndarray) -> list[float]:
+    """Round each value by itself, as Python does: correctly, ties to even, to twelve digits of the range or value."""
+    found = []
+    low, high = (math.log10(x) if parameter.log else x for x in (parameter.low, parameter.high))
+    for u in codes.tolist():
+        position = low + u * (high - low)
+        value = 10.0**position if parameter.log else position
+        digits = 12 - math.ceil(math.log10(abs(value) if parameter.log else high - low))
+        found.append(min(max(round(value, digits), parameter.low), parameter.high) + 0.0)
+    return found
+
+
+RANGES = [(0, 1), (-0.3, 0.3), (2.0, 1024.0), (1e-3, 1e3), (-7.04, -4.53), (1e6, 1e6 + 1e-3), (3.6e10, 1.3e11)]
+EXTREME = [(0.0, 1e-12), (1e-40, 1e-38), (-1e30, 1e30), (1e22, 1e24), (1e-300, 1e300), (-1e308, 5e307)]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "log"),
+    [(low, high, log) for low, high in RANGES + EXTREME for log in (False, True) if low > 0 or not log],
+)
+def test_many_values_are_rounded_to_the_same_bits_as_one(low: float, high: float, log: bool) -> None:
+    parameter, rng = RealParameter(name="x", low=low, high=high, log=log), np.random.default_rng(0)
+    ties = [(rng.integers(0, 10**k, 1000) + 0.5) / 10**k for k in (6, 12)]
+    u = np.concatenate([rng.random(1000), np.linspace(0, 1, 41), rng.integers(0, 4096, 200) / 4096, *ties])
+    found = parameter.decode(u)
+    assert {type(value) for value in found} == {float}
+    assert [value.hex() for value in found] == [value.hex() for value in one_by_one(parameter, u)]
 
 
 @given(integers(), st.floats(0, 1))
