@@ -15,6 +15,7 @@ from hypermap_lite.errors import NoValidEvaluationError
 from hypermap_lite.scenario import load_scenario
 from hypermap_lite.scenario.lint import lint
 from hypermap_lite.study import load_study
+from tests.slow import slow_unless
 
 EXAMPLES = Path(__file__).parents[1] / "example_scenarios"
 STUDIES = sorted(EXAMPLES.glob("robot/studies/*.json"))
@@ -43,7 +44,7 @@ def test_an_example_runs(file: Path, tmp_path: Path) -> None:
         assert [row["state"] for row in csv.DictReader(history)] == ["completed"] * 5
 
 
-@pytest.mark.parametrize("file", ROBOT, ids=name_of)
+@pytest.mark.parametrize("file", slow_unless(lambda file: file.stem == "operator_prior", ROBOT), ids=name_of)
 def test_a_robot_example_runs(file: Path, tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     assert run(file, tmp_path / "out", "evaluator.replicates=1") == 0
@@ -90,6 +91,7 @@ def test_every_robot_task_has_an_example_study() -> None:
     assert {file.parent.name for file in ROBOT} <= {file.stem for file in STUDIES}
 
 
+@pytest.mark.slow
 def test_a_robot_run_has_the_same_rows_with_any_number_of_workers(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     file = EXAMPLES / "robot" / "peg_insertion" / "operator_prior.json"

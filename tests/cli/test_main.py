@@ -138,12 +138,12 @@ def shell(script, folder, **environment):
     ("script", "status"),
     [
         pytest.param("HL run scenario.json --no-plot 2>&-", 0, id="stderr closed"),
-        pytest.param("HL run scenario.json --no-plot >&-", 0, id="stdout closed"),
-        pytest.param("HL check none.json 2>&-", 2, id="error with stderr closed"),
+        pytest.param("HL run scenario.json --no-plot >&-", 0, id="stdout closed", marks=pytest.mark.slow),
+        pytest.param("HL check none.json 2>&-", 2, id="error with stderr closed", marks=pytest.mark.slow),
         pytest.param("HL check none.json 2>&1 | true", 2, id="error with stderr broken"),
-        pytest.param("HL check none.json 2>/dev/full", 2, id="error with stderr full"),
+        pytest.param("HL check none.json 2>/dev/full", 2, id="error with stderr full", marks=pytest.mark.slow),
         pytest.param("HL --help | true", 0, id="help with stdout broken"),
-        pytest.param("HL check scenario.json | true", 0, id="stdout broken"),
+        pytest.param("HL check scenario.json | true", 0, id="stdout broken", marks=pytest.mark.slow),
         pytest.param("HL check scenario.json >/dev/full", 1, id="stdout full"),
     ],
 )

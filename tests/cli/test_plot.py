@@ -8,6 +8,7 @@ from hypermap_lite import plotting
 from hypermap_lite.cli import plot
 from hypermap_lite.errors import RunFolderError, UsageError
 from tests.plotting.run_folders import TWO_PARAMETERS, write_run
+from tests.slow import slow_after
 
 
 def run_command(*arguments):
@@ -29,7 +30,7 @@ def test_help_lists_exactly_the_kinds_there_are():
     assert list(plot.KINDS) == list(plotting.KINDS)
 
 
-@pytest.mark.parametrize("kind", plot.KINDS)
+@pytest.mark.parametrize("kind", slow_after(2, plot.KINDS))
 def test_files_written_are_listed_on_stdout(outputs, capsys, kind):
     if kind == "regret":  # for one objective
         write_run(outputs / "op_1", [[1.0], [2.0]], objectives=[{"name": "f"}], parameters=TWO_PARAMETERS)

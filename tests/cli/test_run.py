@@ -12,6 +12,7 @@ import pytest
 
 from hypermap_lite.cli import main
 from tests.cli.scenarios import write_scenario
+from tests.slow import slow_after
 
 K = {"parameter_type": "integer", "values": [0, 9]}
 
@@ -249,6 +250,7 @@ def test_folder_that_cannot_be_made_ends_with_status_2(tmp_path, capsys):
     assert "cannot be written: Not a directory" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_full_disk_ends_with_status_2_and_the_next_run_goes_on(tmp_path):
     path = write_scenario(tmp_path, budget={"evaluations": 60, "batch_size": 2})
     done = subprocess.run(
@@ -355,7 +357,7 @@ def read_until(stream, word):
 
 @pytest.mark.parametrize(
     ("signals", "status"),
-    [([signal.SIGINT, signal.SIGINT], 130), ([signal.SIGTERM], 143), ([signal.SIGHUP], 129)],
+    slow_after(1, [([signal.SIGINT, signal.SIGINT], 130), ([signal.SIGTERM], 143), ([signal.SIGHUP], 129)]),
     ids=["two interrupts", "terminate", "hang up"],
 )
 def test_stop_at_once_kills_what_runs_and_keeps_what_is_finished(tmp_path, waiting, signals, status):

@@ -140,6 +140,7 @@ def test_help_says_where_everything_is_and_how_to_go_on(capsys):
     assert text.count("python -m hypermap_lite study ") >= 2
 
 
+@pytest.mark.slow
 def test_run_that_keeps_failing_is_reported_beside_the_others_and_tried_again_from_the_start(tmp_path, capsys):
     write_study(tmp_path / "other")
     broken = {**A, "set": {"evaluator.max_consecutive_failures": 2}}

@@ -167,6 +167,7 @@ def simulated_race(rng, stds, spec):
     return race_against(*found, spec=spec, replicates=5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spread", ["even", "uneven"])
 def test_errors_on_what_is_not_dominated_are_rarer_than_stated(spread):
     """On the front itself, the worst case: no configuration dominates another, and lucky ones look as if they did."""

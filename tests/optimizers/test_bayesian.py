@@ -16,6 +16,7 @@ from hypermap_lite.scalarization import SCALARIZATIONS, WEIGHTS
 from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.surrogates import SURROGATES
 from tests.optimizers.runs import configurations, evaluate, fail, resumed, run, scenario_of
+from tests.slow import slow_after
 
 GAUSSIANS = {
     "a": {"parameter_type": "real", "values": [0, 1], "prior": {"type": "gaussian", "mean": 0.5, "std": 0.2}},
@@ -97,9 +98,9 @@ def mixed_objectives(c: dict) -> dict[str, float]:
     "changes",
     [
         pytest.param({}, id="default"),
-        pytest.param({"surrogate": "random_forest"}, id="random_forest"),
-        pytest.param({"acquisition": "thompson_sampling"}, id="thompson_sampling"),
-        pytest.param({"preset": "paper"}, id="paper"),
+        pytest.param({"surrogate": "random_forest"}, id="random_forest", marks=pytest.mark.slow),
+        pytest.param({"acquisition": "thompson_sampling"}, id="thompson_sampling", marks=pytest.mark.slow),
+        pytest.param({"preset": "paper"}, id="paper", marks=pytest.mark.slow),
     ],
 )
 def test_a_resumed_run_with_priors_and_failures_goes_on_past_several_milestones(changes: dict) -> None:
@@ -114,7 +115,7 @@ def test_a_resumed_run_with_priors_and_failures_goes_on_past_several_milestones(
     assert found[0].prior_weight is not None
 
 
-@pytest.mark.parametrize("value", [0.0, 5.0, -3e200])
+@pytest.mark.parametrize("value", slow_after(1, [-3e200, 0.0, 5.0]))
 @pytest.mark.parametrize(
     "changes",
     [
@@ -224,6 +225,7 @@ def test_a_strong_prior_pulls_the_suggestions() -> None:
     assert [c["a"] for c in configurations(optimizer)[5:]] == pytest.approx([0.9] * 4, abs=0.03)
 
 
+@pytest.mark.slow
 def test_it_spreads_along_a_front_better_than_random_search() -> None:
     def volumes(kind: str) -> list[float]:
         runs = [run(scenario_of(optimizer=kind, seed=seed, budget={"evaluations": 25}), 25) for seed in range(5)]
@@ -232,6 +234,7 @@ def test_it_spreads_along_a_front_better_than_random_search() -> None:
     assert np.median(volumes("bayesian")) > max(volumes("random_search"))
 
 
+@pytest.mark.slow
 def test_a_front_flat_but_for_numerical_dust_does_not_blind_the_search() -> None:
     def with_penalty(c: dict) -> dict[str, float]:
         far = -((c["a"] - 0.8) ** 2) - (c["b"] / 5 - 0.5) ** 2

@@ -17,6 +17,7 @@ from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.scenario.summary import summarize
 from tests.constrained import SPACES, space_of
 from tests.optimizers.runs import evaluate, resumed, run, scenario_of
+from tests.slow import slow_unless
 
 every_optimizer = pytest.mark.parametrize("kind", OPTIMIZERS)
 
@@ -33,12 +34,15 @@ def objectives(configuration: dict) -> dict[str, float]:
 
 @pytest.mark.parametrize(
     ("kind", "name"),
-    [
-        (kind, name)
-        for kind in OPTIMIZERS
-        for name in ("ring", "tiny", "mixed", "mixed equality", "sum")
-        if kind != "cma_es" or not name.startswith("mixed")  # it knows numbers only
-    ],
+    slow_unless(
+        lambda kind, name: kind == "bayesian" or name == "ring",
+        [
+            (kind, name)
+            for kind in OPTIMIZERS
+            for name in ("ring", "tiny", "mixed", "mixed equality", "sum")
+            if kind != "cma_es" or not name.startswith("mixed")  # it knows numbers only
+        ],
+    ),
 )
 def test_every_suggestion_meets_the_constraints_and_a_resumed_run_goes_on(kind: str, name: str) -> None:
     scenario, space = constrained(name, optimizer=kind), space_of(name)

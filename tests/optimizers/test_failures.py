@@ -169,6 +169,7 @@ def test_infeasible_and_broken_evaluations_stay_what_they_are(after_24: Bayesian
     assert optimizer.set_aside() == failed_trials(after_24)
 
 
+@pytest.mark.slow
 def test_a_search_among_failures_finds_more_of_the_successes() -> None:
     """Successes differ by a tenth of what separates them from failures."""
 
@@ -227,6 +228,7 @@ def test_the_front_that_is_confirmed_is_one_of_successes(optimizer: str, objecti
     ],
     ids=["batches", "misleading prior"],
 )
+@pytest.mark.slow
 def test_so_does_a_run_in_batches_or_with_a_prior(changes: dict[str, Any]) -> None:
     scenario, batch = SCENARIO | changes, changes.get("budget", {}).get("batch_size", 1)
     whole = run(scenario, 34, batch=batch, function=skill)

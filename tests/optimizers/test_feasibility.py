@@ -20,6 +20,7 @@ from hypermap_lite.pareto.hypervolume import hypervolume
 from hypermap_lite.priors.product import ProductPrior
 from hypermap_lite.scenario.loader import load_scenario
 from tests.optimizers.runs import configurations, evaluate, resumed, run, scenario_of
+from tests.slow import slow_after
 
 LIGHT = {"type": "local_search", "candidates": 64, "starts": 1}
 GAUSSIAN = {"type": "gaussian", "mean": 0.6, "std": 0.3}
@@ -61,18 +62,32 @@ def judged(suggestion: Suggestion, m: int) -> Evaluation:
     return Evaluation(suggestion=suggestion, state=state, values={f"f{k}": values[f"f{k}"] for k in range(m)})
 
 
-@pytest.mark.parametrize("prior", [None, GAUSSIAN], ids=["no_prior", "prior"])
 @pytest.mark.parametrize(
-    ("scalarization", "m"), [("linear", 1), ("linear", 2), ("linear", 3), ("tchebyshev", 2), ("tchebyshev", 3)]
+    ("scalarization", "m", "prior"),
+    slow_after(
+        3,
+        [
+            ("linear", 1, "no_prior"),
+            ("linear", 2, "prior"),
+            ("tchebyshev", 3, "no_prior"),
+            ("linear", 1, "prior"),
+            ("linear", 2, "no_prior"),
+            ("linear", 3, "no_prior"),
+            ("linear", 3, "prior"),
+            ("tchebyshev", 2, "no_prior"),
+            ("tchebyshev", 2, "prior"),
+            ("tchebyshev", 3, "prior"),
+        ],
+    ),
 )
 @pytest.mark.parametrize("acquisition", ACQUISITIONS)
 @pytest.mark.parametrize("surrogate", ["gaussian_process", {"type": "random_forest", "number_of_trees": 8}], ids=str)
 def test_every_combination_gives_legal_batches_and_goes_on_as_it_would_have(
-    surrogate: Any, acquisition: str, scalarization: str, m: int, prior: Any
+    surrogate: Any, acquisition: str, scalarization: str, m: int, prior: str
 ) -> None:
     samples = {"samples": 8} if "improvement" in acquisition else {}
     scenario = scenario_of(
-        input_parameters=mixed_space(prior),
+        input_parameters=mixed_space(GAUSSIAN if prior == "prior" else None),
         objectives=[{"name": f"f{k}"} for k in range(m)],
         surrogate=surrogate,
         acquisition={"type": acquisition, "scalarization": scalarization, **samples},
@@ -114,7 +129,7 @@ def test_values_of_infeasible_points_are_no_incumbents_and_train_no_model(acquis
 
 
 @pytest.mark.parametrize("acquisition", ACQUISITIONS)
-@pytest.mark.parametrize("surrogate", ["gaussian_process", "random_forest"])
+@pytest.mark.parametrize("surrogate", slow_after(1, ["gaussian_process", "random_forest"]))
 def test_no_acquisition_seeks_out_the_infeasible(acquisition: str, surrogate: str) -> None:
     scenario = scenario_of(acquisition=acquisition, surrogate=surrogate, maximizer=LIGHT)
     optimizer = constrained(scenario, 17)
@@ -290,7 +305,7 @@ def failing_below(bound: float, scenario: Mapping[str, Any], n: int, state: Stat
     return optimizer
 
 
-@pytest.mark.parametrize("state", [State.FAILED, State.TIMEOUT])
+@pytest.mark.parametrize("state", slow_after(1, [State.FAILED, State.TIMEOUT]))
 def test_failures_tell_of_feasibility_what_infeasible_evaluations_do(state: State) -> None:
     scenario = scenario_of(budget={"evaluations": 20})
     failed = failing_below(0.4, scenario, 20, state)
@@ -300,7 +315,7 @@ def test_failures_tell_of_feasibility_what_infeasible_evaluations_do(state: Stat
     assert failed.history.feasibility(learn_failed=True)[1].tolist() == [e.is_completed for e in failed.history]
 
 
-@pytest.mark.parametrize("surrogate", ["gaussian_process", "random_forest"])
+@pytest.mark.parametrize("surrogate", slow_after(1, ["gaussian_process", "random_forest"]))
 def test_the_search_does_not_come_back_to_where_evaluations_fail(surrogate: str) -> None:
     """The best of the first objective is where all fail."""
     scenario = scenario_of(budget={"evaluations": 30}, surrogate={"type": surrogate}, maximizer=LIGHT)

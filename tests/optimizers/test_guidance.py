@@ -139,13 +139,13 @@ def test_what_is_decided_is_said_once(caplog: pytest.LogCaptureFixture) -> None:
     assert not [r for r in caplog.records if "prior" in r.getMessage()]
 
 
-@pytest.mark.parametrize("stop", [8, 9, 10, 11, 12, 13, 16])
 @pytest.mark.parametrize("a", [0.22, 0.95])
-def test_a_resumed_run_trusts_as_the_uninterrupted_one(a: float, stop: int) -> None:
+def test_a_resumed_run_trusts_as_the_uninterrupted_one(a: float) -> None:
     whole = run(believing(a), 17, function=valley)
-    (again,) = resumed(believing(a), list(whole.history)[:stop]).ask()
-    expected = whole.history[stop].suggestion
-    assert replace(again, seconds=0) == replace(expected, seconds=0)
+    for stop in (8, 9, 10, 11, 12, 13, 16):
+        (again,) = resumed(believing(a), list(whole.history)[:stop]).ask()
+        expected = whole.history[stop].suggestion
+        assert replace(again, seconds=0) == replace(expected, seconds=0)
 
 
 @pytest.mark.parametrize("n_done", [8, 11, 14])
@@ -230,11 +230,11 @@ def test_trust_is_kept_per_objective_and_steps_follow_whom_is_trusted() -> None:
     assert {s.prior_of for s in rows[-5:]} == {"near"}
 
 
-@pytest.mark.parametrize("stop", [5, 8, 11, 15])
-def test_a_resumed_run_follows_the_same_objectives(stop: int) -> None:
+def test_a_resumed_run_follows_the_same_objectives() -> None:
     whole = run(two_beliefs(0.2, 0.01), 16)
-    (again,) = resumed(two_beliefs(0.2, 0.01), list(whole.history)[:stop]).ask()
-    assert replace(again, seconds=0) == replace(whole.history[stop].suggestion, seconds=0)
+    for stop in (5, 8, 11, 15):
+        (again,) = resumed(two_beliefs(0.2, 0.01), list(whole.history)[:stop]).ask()
+        assert replace(again, seconds=0) == replace(whole.history[stop].suggestion, seconds=0)
 
 
 def test_the_paper_preset_takes_no_care() -> None:

@@ -199,6 +199,7 @@ def test_a_stated_reference_point_is_the_least_limit() -> None:
         assert tail.limit == least if least else tail.limit < 1
 
 
+@pytest.mark.slow
 def test_where_penalties_are_compressed_the_best_is_found() -> None:
     best: dict[bool, list[float]] = {True: [], False: []}
     for compresses, found in best.items():
@@ -262,6 +263,7 @@ def test_what_is_set_aside_does_not_depend_on_when_it_was_asked_for() -> None:
     assert np.array_equal(at_once.posterior().predict(X).mean, step_by_step.posterior().predict(X).mean)
 
 
+@pytest.mark.slow
 def test_one_failure_in_ten_does_not_keep_the_search_from_the_optimum() -> None:
     best: dict[bool, list[float]] = {True: [], False: []}
     for ignores, found in best.items():

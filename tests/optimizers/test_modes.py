@@ -18,6 +18,7 @@ from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.surrogates import GaussianProcess
 from hypermap_lite.typing import Configuration
 from tests.optimizers.runs import configurations, evaluate, resumed, run, scenario_of
+from tests.slow import slow_after
 
 
 def is_fast(place: Configuration) -> bool:
@@ -83,6 +84,7 @@ def test_next_to_the_cliff_what_is_predicted_is_of_one_kind_or_of_the_other(afte
     assert n_halfway(going_on_from(list(after_24.history), **TOGETHER)) > 3
 
 
+@pytest.mark.slow
 def test_what_was_evaluated_is_predicted_as_it_was(after_24: BayesianOptimizer) -> None:
     """Also where the chances of the other kind are better."""
     for optimizer in (after_24, told(40, seed=1)):
@@ -169,6 +171,7 @@ def test_both_kinds_are_on_the_posterior_front(after_24: BayesianOptimizer) -> N
     assert after_24.set_aside() == set()
 
 
+@pytest.mark.slow
 def test_both_kinds_are_confirmed() -> None:
     optimizer = run(SCENARIO | {"budget": {"evaluations": 40, "confirm_front": 8}}, 40, function=gait)
     assert isinstance(optimizer, BayesianOptimizer)
@@ -210,22 +213,25 @@ def test_elsewhere_both_are_of_one_kind(changes: dict[str, Any], after_24: Bayes
 
 @pytest.mark.parametrize(
     "changes",
-    [
-        {},
-        {"budget": {"evaluations": 40, "batch_size": 3}},
-        {"objectives": [{"name": "near"}, {"name": "far", "goal": "maximize"}]},
-        {
-            "input_parameters": {
-                "a": {
-                    "parameter_type": "real",
-                    "values": [0, 1],
-                    "prior": {"type": "gaussian", "mean": 0.8, "std": 0.2},
+    slow_after(
+        1,
+        [
+            {},
+            {"budget": {"evaluations": 40, "batch_size": 3}},
+            {"objectives": [{"name": "near"}, {"name": "far", "goal": "maximize"}]},
+            {
+                "input_parameters": {
+                    "a": {
+                        "parameter_type": "real",
+                        "values": [0, 1],
+                        "prior": {"type": "gaussian", "mean": 0.8, "std": 0.2},
+                    },
+                    "b": {"parameter_type": "real", "values": [-5, 5]},
                 },
-                "b": {"parameter_type": "real", "values": [-5, 5]},
+                "acquisition": {"prior_weighting": {"prior_free": 0.5}},
             },
-            "acquisition": {"prior_weighting": {"prior_free": 0.5}},
-        },
-    ],
+        ],
+    ),
     ids=["one at a time", "batches", "no reference point", "prior"],
 )
 def test_a_resumed_run_goes_on_as_the_uninterrupted_one(changes: dict[str, Any]) -> None:
@@ -240,6 +246,7 @@ def test_a_resumed_run_goes_on_as_the_uninterrupted_one(changes: dict[str, Any])
         assert configurations(again) == configurations(whole)
 
 
+@pytest.mark.slow
 def test_where_nothing_is_allowed_neither_is_looked_for() -> None:
     """Of either kind half is infeasible."""
     optimizer = run(SCENARIO, 12, function=gait)
@@ -256,6 +263,7 @@ def test_where_nothing_is_allowed_neither_is_looked_for() -> None:
     assert sum(e.is_completed for e in late) >= 8
 
 
+@pytest.mark.slow
 def test_an_outlier_of_either_kind_is_set_aside() -> None:
     optimizer = told(30)
     rows = list(optimizer.history)
@@ -268,6 +276,7 @@ def test_an_outlier_of_either_kind_is_set_aside() -> None:
         assert again.set_aside() == {rows[place].trial}
 
 
+@pytest.mark.slow
 def test_a_front_with_a_cliff_in_it_is_found_better() -> None:
     corner = np.array([3.0, 3.0])
     found: dict[bool, list[float]] = {True: [], False: []}

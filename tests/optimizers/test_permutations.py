@@ -40,6 +40,7 @@ def objectives(configuration: dict) -> dict[str, float]:
     return {"near": abs(order.index(0) - 2) + configuration["a"], "far": float(configuration["other"].index(7))}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kernel", ["spearman", "hamming"])
 def test_the_best_order_is_found_sooner_than_by_random_search(kernel: str) -> None:
     def bests(optimizer: str) -> list[float]:
@@ -58,10 +59,14 @@ def test_the_best_order_is_found_sooner_than_by_random_search(kernel: str) -> No
     "changes",
     [
         *(pytest.param({"optimizer": kind}, id=kind) for kind in KINDS),
-        pytest.param({"surrogate": "random_forest"}, id="random_forest"),
-        pytest.param({"acquisition": "thompson_sampling"}, id="thompson_sampling"),
         pytest.param({"acquisition": "upper_confidence_bound", "maximizer": "local_search"}, id="local_search"),
-        pytest.param({"constraints": ["position(order, 0) < position(order, 4)", "a < 0.5"]}, id="constraints"),
+        pytest.param({"surrogate": "random_forest"}, id="random_forest", marks=pytest.mark.slow),
+        pytest.param({"acquisition": "thompson_sampling"}, id="thompson_sampling", marks=pytest.mark.slow),
+        pytest.param(
+            {"constraints": ["position(order, 0) < position(order, 4)", "a < 0.5"]},
+            id="constraints",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_resumed_run_over_permutations_goes_on_as_the_uninterrupted_one(changes: dict) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from tests.optimizers.problems import BRANIN, MIXED, ORDERED, branin, mixed
 from tests.optimizers.runs import run
+from tests.slow import slow_after
 
 PROBLEMS = {"branin": (BRANIN, branin, 0.397887), "mixed": (MIXED, mixed, 0.0), "ordered": (ORDERED, mixed, 0.0)}
 
@@ -21,7 +22,10 @@ def median_gap(problem: str, kind: str) -> float:
 
 @pytest.mark.parametrize(
     ("problem", "kind"),
-    [(p, k) for p in PROBLEMS for k in ("local_search", "evolutionary", "cma_es") if (p, k) != ("mixed", "cma_es")],
+    slow_after(
+        3,
+        [(p, k) for p in PROBLEMS for k in ("local_search", "evolutionary", "cma_es") if (p, k) != ("mixed", "cma_es")],
+    ),
 )
 def test_half_the_distance_to_the_optimum_is_left(problem: str, kind: str) -> None:
     assert median_gap(problem, kind) < 0.5 * median_gap(problem, "random_search")

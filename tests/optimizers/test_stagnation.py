@@ -23,6 +23,7 @@ from hypermap_lite.scenario.loader import load_scenario
 from hypermap_lite.surrogates.base import Prediction
 from hypermap_lite.typing import Configuration
 from tests.optimizers.runs import Function, resumed, run, scenario_of, two_objectives
+from tests.slow import slow_after
 
 NAMES = ("near", "far")
 GUIDED = "guided"
@@ -161,6 +162,7 @@ def on_the_plateau(escapes: int, **changes: Any) -> dict[str, Any]:
     )
 
 
+@pytest.mark.slow
 def test_draws_lead_off_a_plateau_where_the_model_stays() -> None:
     stuck, escaped = (run(on_the_plateau(escapes), 60, function=plateau) for escapes in (0, 3))
     assert min(stuck.history.Y()[:, 0]) >= 0
@@ -193,6 +195,7 @@ def phases_of(function: Function, seed: int = 0, **changes: Any) -> list[str]:
     return phases(run(on_the_plateau(3) | {"seed": seed} | changes, 30, function=function))
 
 
+@pytest.mark.slow
 def test_draws_lead_off_a_plateau_whose_noise_hides_that_it_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = [trace for seed in range(5) if RANDOM in (trace := phases_of(rough_plateau, seed))]
     assert len(drawn) >= 3
@@ -232,14 +235,14 @@ def as_shown(suggestion: Suggestion) -> Suggestion:
     return replace(suggestion, seconds=0.0)
 
 
-@pytest.mark.parametrize("stop", [12, 16, 20, 24])
-@pytest.mark.parametrize("function", [plateau, rough_plateau], ids=lambda function: function.__name__)
-def test_a_resumed_run_draws_the_same(stop: int, function: Function) -> None:
+@pytest.mark.parametrize("function", slow_after(1, [plateau, rough_plateau]), ids=lambda f: f.__name__)
+def test_a_resumed_run_draws_the_same(function: Function) -> None:
     scenario = on_the_plateau(3)
     whole = run(scenario, 28, function=function, batch=4)
-    expected = [as_shown(e.suggestion) for e in list(whole.history)[stop : stop + 4]]
-    assert [as_shown(s) for s in resumed(scenario, list(whole.history)[:stop]).ask(4)] == expected
     assert RANDOM in phases(whole)[12:]
+    for stop in (12, 16, 20, 24):
+        expected = [as_shown(e.suggestion) for e in list(whole.history)[stop : stop + 4]]
+        assert [as_shown(s) for s in resumed(scenario, list(whole.history)[:stop]).ask(4)] == expected
 
 
 def test_a_batch_shares_the_draws() -> None:
@@ -254,7 +257,7 @@ def test_draws_are_counted_by_their_trials_whatever_finishes_first() -> None:
     assert draws_at_end([*drawn, slow]) == 3
 
 
-@pytest.mark.parametrize("prior_free", [0.0, 0.5])
+@pytest.mark.parametrize("prior_free", slow_after(1, [0.5, 0.0]))
 def test_a_step_that_a_prior_guides_is_no_draw(prior_free: float) -> None:
     prior = {"type": "gaussian", "mean": 0.0, "std": 0.01}
     parameters = scenario_of()["input_parameters"]
@@ -300,7 +303,7 @@ def smooth(c: Configuration) -> dict[str, float]:
     return {**four, "near": four["p"], "far": -four["s"]}
 
 
-@pytest.mark.parametrize("changes", SMOOTH.values(), ids=SMOOTH)
+@pytest.mark.parametrize("changes", slow_after(1, SMOOTH.values()), ids=SMOOTH)
 def test_a_search_that_promises_something_is_left_alone(
     changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:

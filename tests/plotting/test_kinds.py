@@ -8,6 +8,7 @@ import pytest
 from hypermap_lite import plotting
 from hypermap_lite.errors import UsageError
 from tests.plotting.run_folders import TWO_MAXIMIZED, TWO_PARAMETERS, write_run
+from tests.slow import slow_after
 
 
 def write_run_for(kind, folder, Y):
@@ -46,7 +47,7 @@ def test_kinds_of_parameters_take_a_choice_of_them(kind, tmp_path):
     assert header.index("k") + 1 == header.index("x")
 
 
-@pytest.mark.parametrize("kind", plotting.KINDS)
+@pytest.mark.parametrize("kind", slow_after(2, plotting.KINDS))
 def test_every_kind_draws_equal_files_twice(kind, tmp_path):
     folder = write_run_for(kind, tmp_path / "run", [[1.0, 2.0], [2.0, 1.0], [0.0, 0.0]])
     first, second = (plotting.plot_function(kind)([folder], tmp_path / name, data=True) for name in "ab")

@@ -17,6 +17,7 @@ from hypermap_lite.priors import (
     WeightsPrior,
 )
 from hypermap_lite.space import CategoricalParameter, IntegerParameter, OrdinalParameter, Parameter, RealParameter
+from tests.slow import slow_unless
 
 REAL = RealParameter(name="r", low=-2.0, high=6.0)
 LOG = RealParameter(name="l", low=1e-3, high=10.0, log=True)
@@ -160,7 +161,7 @@ def test_mode_is_nearly_as_dense_as_any_sample(prior: object, parameters: tuple[
     assert density.log_density(mode[None])[0] >= drawn.max() - np.log(1.5)
 
 
-@pytest.mark.parametrize(("prior", "parameters"), CASES)
+@pytest.mark.parametrize(("prior", "parameters"), slow_unless(lambda prior, parameters: len(parameters) < 3, CASES))
 def test_marginals_are_integrals_of_the_joint_density(prior: object, parameters: tuple[Parameter, ...]) -> None:
     density = prior.on(parameters)
     masses = masses_of(density, parameters)

@@ -1,4 +1,4 @@
-"""The quick form of each of the paper's studies runs, from the command line to the figures: minutes each, so slow."""
+"""The quick form of each of the paper's studies runs, from the command line to the figures: minutes each, so long."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hypermap_lite.cli import main
 STUDIES = sorted((Path(__file__).parents[2] / "example_scenarios" / "robot" / "studies").glob("*.json"))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("file", STUDIES, ids=lambda file: file.stem)
 def test_quick_study_runs_to_its_figures(file: Path, tmp_path: Path) -> None:
     pytest.importorskip("mujoco")

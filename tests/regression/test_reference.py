@@ -25,6 +25,7 @@ from hypermap_lite.objectives import reference_point_of, to_minimization
 from hypermap_lite.pareto import hypervolume, hypervolume_trace, non_dominated
 from hypermap_lite.plotting.runs import Run, load_run
 from hypermap_lite.study.statistics import evaluations_to_reach, ratio_of_means
+from tests.slow import slow_after, slow_unless
 
 ROOT = Path(__file__).parents[2]
 REFERENCE = ROOT / "outputs" / "reference"
@@ -47,6 +48,10 @@ N_REPEATED = 4
 
 def name_of(folder: Path) -> str:
     return folder.relative_to(REFERENCE).as_posix()
+
+
+def is_by_default_with_a_prior(run: Path) -> bool:
+    return run.parents[2].name.endswith("_default") and run.parent.name == "operator_prior"
 
 
 def rows_of(file: Path) -> list[dict[str, str]]:
@@ -141,7 +146,7 @@ def test_comparison_follows_from_the_summary_exactly(study: Path) -> None:
             assert [float(row[f"ratio{end}"]) for end in ("", "_low", "_high")] == [ratio.value, ratio.low, ratio.high]
 
 
-@pytest.mark.parametrize("folder", RUNS, ids=name_of)
+@pytest.mark.parametrize("folder", slow_unless(is_by_default_with_a_prior, RUNS), ids=name_of)
 def test_optimizer_suggests_again_what_is_stored(folder: Path) -> None:
     require_the_same_libraries(folder)
     stored = evaluations_of(folder)
@@ -161,7 +166,7 @@ def test_optimizer_suggests_again_what_is_stored(folder: Path) -> None:
             assert first[0] == pytest.approx(first[1], abs=ROUNDING)
 
 
-@pytest.mark.parametrize("folder", [run for run in RUNS if run.parent.name == "no_prior"], ids=name_of)
+@pytest.mark.parametrize("folder", slow_after(1, [run for run in RUNS if run.parent.name == "no_prior"]), ids=name_of)
 def test_short_run_repeats_the_stored_one(folder: Path, tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     if metadata.version("mujoco") != json.loads((REFERENCE / "versions.json").read_text())["mujoco"]:

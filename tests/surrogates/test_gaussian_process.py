@@ -13,6 +13,7 @@ from hypermap_lite.surrogates.kernels import MaternHammingKernel
 from hypermap_lite.surrogates.marginal_likelihood import Hyperparameters
 from hypermap_lite.surrogates.paths import Features
 from hypermap_lite.surrogates.process import Process, Standardized
+from tests.slow import slow_after
 
 RNG = np.random.default_rng(0)
 X = RNG.random((20, 2))
@@ -171,7 +172,7 @@ def test_without_noise_the_prediction_goes_through_the_data() -> None:
     assert prediction.mean / Y.std(axis=0) == pytest.approx(Y / Y.std(axis=0), abs=1e-3)
 
 
-@pytest.mark.parametrize("kernel", EMBEDDINGS)
+@pytest.mark.parametrize("kernel", slow_after(1, EMBEDDINGS))
 def test_features_of_permutations_average_to_the_kernel(kernel: str) -> None:
     parameter = PermutationParameter(name="order", size=4, kernel=kernel)
     points = np.column_stack([np.full(3, 0.3), parameter.encode([(0, 1, 2, 3), (1, 0, 2, 3), (3, 2, 1, 0)])])

@@ -18,6 +18,7 @@ from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior
 from hypermap_lite.surrogates.marginal_likelihood import HyperPrior, MarginalLikelihood, fit_hyperparameters
 from hypermap_lite.surrogates.noise_free import NOTICEABLE, likelier_without_noise
 from hypermap_lite.surrogates.process import Standardized
+from tests.slow import slow_after
 
 BETWEEN = np.linspace(0.02, 0.98, 97)[:, None]
 
@@ -81,7 +82,7 @@ def test_roughness_is_not_taken_for_noise(seed, n) -> None:
     assert error(doubted) < 0.8 * error(believed)
 
 
-@pytest.mark.parametrize(("d", "n", "sd"), [(1, 20, 0.5), (1, 20, 1.0), (1, 30, 0.5), (2, 30, 1.0)])
+@pytest.mark.parametrize(("d", "n", "sd"), slow_after(1, [(1, 20, 0.5), (1, 20, 1.0), (1, 30, 0.5), (2, 30, 1.0)]))
 def test_noise_stays_noise(d, n, sd) -> None:
     n_noisy = 0
     for seed in range(8):

@@ -11,6 +11,7 @@ from hypermap_lite.surrogates.gaussian_process import GaussianProcessPosterior
 from hypermap_lite.surrogates.marginal_likelihood import HyperPrior, MarginalLikelihood, fit_hyperparameters
 from hypermap_lite.surrogates.outliers import FEWEST, RARE, Start, without_outliers
 from hypermap_lite.surrogates.process import Standardized
+from tests.slow import slow_after
 
 ORDERED = np.ones(2, dtype=bool)
 X = np.random.default_rng(2).random((30, 2))
@@ -69,7 +70,7 @@ def test_failures_without_a_reason_leave_the_model_as_it_would_be_without_them(b
     assert error(told) < 0.1 * error(posterior(spoilt(*rows, by=by), ignore_outliers=False))
 
 
-@pytest.mark.parametrize("dimension", [1, 2, 4, 6])
+@pytest.mark.parametrize("dimension", slow_after(2, [1, 4, 2, 6]))
 @pytest.mark.parametrize("power", [1, 2])
 def test_failures_are_found_on_smooth_functions_however_far_the_model_extrapolates(dimension: int, power: int) -> None:
     found = 0
