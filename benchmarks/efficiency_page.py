@@ -37,7 +37,8 @@ an evaluation. CPU and wall-clock seconds of one suggestion, fit included: media
 one thread of linear algebra. Largest hypervolumes of VehicleSafety, Penicillin, BraninCurrin (both) and C2-DTLZ2 are
 published approximations, so a share may pass 1 by a little. Of problems called "failing" one evaluation in twenty comes
 out as bad as can be, whatever its point, and counts so. Until a point is feasible, the regret is that
-of the worst value of the box. The best mean of a problem is in bold."""
+of the worst value of the box; one below 1e-12 counts as that, so of the steps, whose minimum is a plateau, one run that
+hits it makes the mean. The best mean of a problem is in bold."""
 
 
 class Asked(Protocol):

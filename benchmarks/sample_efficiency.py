@@ -39,6 +39,7 @@ from problems import (
     MIXED,
     MODES,
     PROBLEMS,
+    ROUGH,
     SEVERAL,
     SINGLE,
     SKILLS,
@@ -81,6 +82,11 @@ TABLES: Mapping[str, Table] = {
         title="Skills of which the front needs two kinds of outcomes",
         problems=tuple(MODES),
         methods=(*COMPARED, *OF_MODES),
+    ),
+    "rough": Table(
+        title="More waves and steps than can be told apart",
+        problems=tuple(ROUGH),
+        methods=(*COMPARED, "noise-free model"),
     ),
     "many": Table(
         title="Ten to twenty parameters, 100 evaluations",

@@ -14,13 +14,14 @@ from .many import MANY
 from .mixed import MIXED
 from .modes import MODES
 from .plateau import PLATEAU
+from .rough import ROUGH
 from .several import SEVERAL
 from .single import SINGLE
 from .tails import TAILS
 
 __all__ = [
-    *("CONSTRAINED", "EMULATED", "FAILING", "LIMITS", "MANY", "MIXED", "MODES", "PROBLEMS", "SEVERAL", "SINGLE"),
-    *("SKILLS", "TAILS", "Problem"),
+    *("CONSTRAINED", "EMULATED", "FAILING", "LIMITS", "MANY", "MIXED", "MODES", "PROBLEMS", "ROUGH", "SEVERAL"),
+    *("SINGLE", "SKILLS", "TAILS", "Problem"),
 ]
 
 SKILLS: Mapping[str, Problem] = {"plateau": PLATEAU, "plateau_noisy": replace(PLATEAU, noise=0.1), **EMULATED}
@@ -32,6 +33,7 @@ PROBLEMS: Mapping[str, Problem] = {
     **LIMITS,
     **SKILLS,
     **MODES,
+    **ROUGH,
     **TAILS,
     **FAILING,
     **MANY,

@@ -11,6 +11,7 @@ from scipy.optimize import minimize
 from benchmarks.problems import MIXED, PROBLEMS
 from benchmarks.problems.emulated import EMULATED, TASKS, Landscape
 from benchmarks.problems.formulas import HARTMANN6_MINIMIZER
+from benchmarks.problems.rough import MINIMIZER, griewank, rastrigin, steps, weierstrass
 from hypermap_lite import Optimizer, hypervolume, load_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "example_scenarios" / "robot"
@@ -27,6 +28,11 @@ MINIMIZERS = {
     "func2c": [(1, 1, 0.0898420131 / 2, -0.712656403 / 2), (1, 1, -0.0898420131 / 2, 0.712656403 / 2)],
     "ackley5c": [(8,) * 5 + (0,)],
     "hartmann6_mixed": [(0.2047319160, 0.1507811664, 0.4728852930, 0.3, 0.3, 0.7)],
+    **{
+        name: [tuple(MINIMIZER[:d])]
+        for name, d in (("rastrigin4", 4), ("griewank4", 4), ("weierstrass3", 3), ("steps5", 5))
+    },
+    "lunacek4": [(2.5,) * 4],
 }
 
 
@@ -271,6 +277,26 @@ def test_front_of_two_gaits_gives_the_hypervolume_in_closed_form():
     assert share("gaits", np.vstack([fast, slow])) == pytest.approx(1, abs=1e-3)
     assert share("gaits", fast) < 0.7
     assert share("gaits", points("gaits", 100_000)) < 1
+
+
+def test_rough_functions_have_the_waves_and_steps_of_their_formulas():
+    def at(function, *z):
+        return function(MINIMIZER[: len(z)] + np.array([z]))[0]
+
+    assert at(rastrigin, 0.5, 1, 0, 0) == pytest.approx(0.25 + 20 + 1)
+    assert at(griewank, math.pi, 0, 0, 0) == pytest.approx(math.pi**2 / 4000 + 2)
+    assert at(weierstrass, 5, 0, 0) == pytest.approx(0, abs=1e-9)  # a period of its longest wave
+    assert at(weierstrass, 2.5, 0, 0) == pytest.approx(10 * (2 * (2 - 2**-11) / 3) ** 3)
+    assert at(steps, 0.4, 0.7, 0, 0, 0) == at(steps, 0.44, 1.4, 0, 0, 0) == pytest.approx(0.1 * (0.16 + math.sqrt(10)))
+
+
+def test_front_of_zdt4_gives_the_hypervolume_in_closed_form():
+    X = np.full((4001, 4), 0.5)
+    X[:, 0] = np.linspace(0, 1, 4001)
+    assert share("zdt4", X) == pytest.approx(1, abs=1e-3)
+    X[:, 1] = 0.55  # the next valley: g is 1.25
+    assert PROBLEMS["zdt4"].function(X[1000:1001]).tolist() == [[0.25, pytest.approx(1.25 * (1 - math.sqrt(0.2)))]]
+    assert share("zdt4", points("zdt4", 100_000)) < 1
 
 
 def test_most_of_the_plateau_is_failure_of_equal_duration():
